@@ -13,7 +13,7 @@ __version__: str
 def run(
     arguments: list[str],
     progress: Callable[[str, float | None], bool | None] | None = None,
-    logs: list[tuple[str, int, str, list[tuple[str, Array]]]] = ...,
+    logs: list[tuple[str, int, str, list[tuple[str, str]], list[tuple[str, Array]]]] = ...,
 ) -> tuple[str, bool, list[str]]: ...
 def simulate(
     arguments: list[str], progress: Callable[[str, float | None], bool | None] | None = None

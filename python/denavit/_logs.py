@@ -40,7 +40,7 @@ def given(**options: Any) -> tuple[list[str], list[Columns]]:
                 named = [(column, _column(name, column, values)) for column, values in columns]
                 # the name stands for what is in memory
                 arguments.append(name)
-                memory.append((option, at, name, named))
+                memory.append((option, at, name, [], named))
     return arguments, memory
 
 

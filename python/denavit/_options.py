@@ -22,8 +22,9 @@ answer of ``False`` stops the run."""
 
 PathLike = str | os.PathLike[str]
 
-Columns = tuple[str, int, str, list[tuple[str, Array]]]
-"""A log in memory: its option, which of the logs of this it is, its name, its columns."""
+Columns = tuple[str, int, str, list[tuple[str, str]], list[tuple[str, Array]]]
+"""A log in memory: its option, which of the logs of this it is, its name, what it says of itself,
+its columns."""
 
 
 class HasSource(Protocol):

@@ -50,12 +50,16 @@ class _Table:
             cause = f"cannot be read as Parquet: {error}"
             raise Error([Fault(str(path), None, None, cause, None)]) from None
         self.path = path
+        self.bytes = path.stat().st_size
         self.rows = int(self.file.metadata.num_rows)
         groups = range(self.file.num_row_groups)
         counts = [self.file.metadata.row_group(group).num_rows for group in groups]
         self.ends = np.cumsum(counts, dtype=np.int64)
         self.kinds = {field.name: str(field.type) for field in self.file.schema_arrow}
         self.names = [name for name, kind in self.kinds.items() if kind.startswith(NUMBERS)]
+        said = self.file.schema_arrow.metadata or {}
+        self.header = [(key.decode(), value.decode()) for key, value in sorted(said.items())
+                       if key not in (b"pandas", b"ARROW:schema")]  # fmt: skip
         self.epochs: dict[str, int] = {}
         if self.rows == 0:
             raise Error([Fault(str(path), None, None, "has no rows", None)])
@@ -87,9 +91,23 @@ class _Table:
         return np.asarray((nanoseconds - self.epochs[name]) / 1e9, dtype=np.float64)
 
 
-@lru_cache(maxsize=2)
 def _table(path: Path) -> _Table:
+    return _opened(path, _stamp(path))
+
+
+@lru_cache(maxsize=2)
+def _opened(path: Path, _: tuple[int, ...]) -> _Table:
     return _Table(path)
+
+
+def _stamp(path: Path) -> tuple[int, ...]:
+    """What changes when another file takes this path."""
+    try:
+        found = path.stat()
+    except OSError as error:
+        cause = f"cannot be read: {error.strerror}"
+        raise Error([Fault(str(path), None, None, cause, "check the path")]) from None
+    return found.st_size, found.st_mtime_ns
 
 
 @lru_cache(maxsize=2)
@@ -103,8 +121,8 @@ def condensed(case: studies.Case) -> studies.Row:
     of a Parquet file that every worker can read, and ``arguments`` of the command."""
     plan = json.loads(case.inputs["plan"])
     table = _table(Path(case.options["log"]))
-    if table.rows != plan["rows"]:
-        cause = f"has {table.rows} rows, and the plan is for {plan['rows']}"
+    if table.rows != plan["rows"] or table.bytes != case.options["stamp"][0]:
+        cause = f"has {table.rows} rows, and the plan is for {plan['rows']} of another file"
         raise Error([Fault(str(table.path), None, None, cause, None)])
     first, end = plan["stretches_of_pieces"][case.index]
     text = None
@@ -114,7 +132,7 @@ def condensed(case: studies.Case) -> studies.Row:
             (inside / f"{name}.json").write_bytes(content)
         for stretch in range(first, end):
             start, stop = plan["rows_of_stretches"][stretch]
-            given, memory = _given(table.read(start, stop), f"{table.path.name}[{start}:{stop}]")
+            given, memory = _given(table, start, stop)
             arguments = ["long", "condense", model, *given, *case.options["arguments"]]
             if "columns" in case.inputs:
                 arguments += ["--columns", str(inside / "columns.json")]
@@ -126,10 +144,11 @@ def condensed(case: studies.Case) -> studies.Row:
     return {"rows": text}
 
 
-def _given(columns: dict[str, Any], name: str) -> tuple[list[str], list[Columns]]:
-    """Arguments for rows in memory, and these by a name for messages."""
-    arguments, memory = _logs.given(train=columns)
-    return arguments, [(option, at, name, given) for option, at, _, given in memory]
+def _given(table: _Table, start: int, end: int) -> tuple[list[str], list[Columns]]:
+    """Arguments for rows of a table, and these with a name for messages."""
+    arguments, memory = _logs.given(train=table.read(start, end))
+    name = table.path.name if start == 0 else f"{table.path.name} from row {start + 1} on"
+    return arguments, [(one[0], one[1], name, table.header, one[4]) for one in memory]
 
 
 def identify_long(
@@ -147,7 +166,9 @@ def identify_long(
 ) -> Identification:
     """Identifies base parameters from one log, a Parquet file that may be larger than the memory.
 
-    ``head`` is how many of its rows are identified as any log is; ``time`` the column of its times.
+    ``head`` is how many of its rows are identified as any log is, fewer than all; ``time`` the
+    column of its times, which ``columns`` maps to ``t`` if it has another name. What the file says
+    of itself (``torque_side``, ``model``) counts as in any log.
     ``runner`` computes the pieces (:func:`denavit.studies.on_ray.on_ray` on many machines, each of
     which reads the file by the same path); ``part`` is where rows of pieces are kept, so that a run
     that was broken off goes on. ``options`` are those of :func:`denavit.identify`: ``method``
@@ -167,13 +188,14 @@ def identify_long(
         if columns is not None:
             mapped = ["--columns", _options.file_of(columns, "columns", inside)]
             inputs["columns"] = Path(mapped[1]).read_bytes()
-        of_head, memory = _given(table.read(0, min(head, table.rows)), table.path.name)
+        of_head, memory = _given(table, 0, min(head, table.rows))
         end = float(table.read(table.rows - 1, table.rows)[time][0])
         planning = ["long", "plan", place, *of_head, *mapped, *arguments]
         planning += [f"--rows={table.rows}", f"--end={end!r}"]
         plan, _, _ = _options.answered(planning, progress, memory)
         inputs["plan"] = json.dumps(plan).encode()
-        given = {"log": str(table.path), "arguments": arguments}
+        stamp = list(_stamp(table.path))
+        given = {"log": str(table.path), "stamp": stamp, "arguments": arguments}
         study = studies.Study("long", condensed, plan["pieces"], inputs=inputs, options=given)
         (inside / "plan.json").write_bytes(inputs["plan"])
         with open(inside / "rows.jsonl", "w", encoding="utf-8") as file:

@@ -144,23 +144,20 @@ fn class(command: &str) -> &'static str {
         "simulate" => "SimulateError",
         "walk" => "WalkError",
         "excite" => "ExciteError",
-        "identify" => "IdentifyError",
+        "identify" | "long" => "IdentifyError",
         "diagnose" => "DiagnoseError",
         _ => "ModelError",
     }
 }
 
-/// A log in memory: its option, which of the logs of this it is, its name, its columns.
-type Columns<'py> = (String, usize, String, Vec<(String, PyReadonlyArray1<'py, f64>)>);
+/// A log in memory: its option, which of the logs of this it is, its name, what it says of itself,
+/// its columns.
+type Columns<'py> =
+    (String, usize, String, Vec<(String, String)>, Vec<(String, PyReadonlyArray1<'py, f64>)>);
 
-fn given((option, at, name, columns): Columns<'_>) -> GivenLog {
+fn given((option, at, name, header, columns): Columns<'_>) -> GivenLog {
     let columns = columns.into_iter().map(|(name, array)| (name, array.as_array().to_vec()));
-    GivenLog {
-        option,
-        at,
-        name,
-        log: MemoryLog { columns: columns.collect(), ..MemoryLog::default() },
-    }
+    GivenLog { option, at, name, log: MemoryLog { header, columns: columns.collect() } }
 }
 
 fn words(arguments: Vec<String>) -> Vec<OsString> {

@@ -151,3 +151,38 @@ def test_what_is_no_long_log(columns, log, tmp_path):
     text.write_text("t,q_elbow\n")
     with pytest.raises(Error, match="Parquet"):
         identify_long(example.NOMINAL, text)
+
+
+def test_what_a_file_says_of_itself_counts(columns, tmp_path):
+    """As in any log: of another model it is refused, and so is a side that there is not."""
+    for key, value, says in (("model", "other", "other"), ("torque_side", "left", "left")):
+        path = tmp_path / f"{key}.parquet"
+        table = pyarrow.table(columns).replace_schema_metadata({key: value})
+        parquet.write_table(table, path)
+        with pytest.raises(Error, match=says):
+            identify_long(example.NOMINAL, path, head=HEAD, **FILTERED)
+
+
+def test_another_file_at_the_same_path_is_read_anew(columns, tmp_path):
+    path = tmp_path / "log.parquet"
+    found = []
+    for factor in (1.0, 2.0):
+        changed = {name: values * (factor if name.startswith("tau") else 1.0)
+                   for name, values in columns.items()}  # fmt: skip
+        parquet.write_table(pyarrow.table(changed), path)
+        options = FILTERED | {"head": HEAD, "part": tmp_path / f"rows-{factor}.parquet"}
+        found.append(identify_long(example.NOMINAL, path, **options).parameters)
+    for one, twice in zip(*found):
+        assert twice.value == pytest.approx(2.0 * one.value, rel=1e-6, abs=1e-9)
+
+
+def test_what_is_wrong_behind_the_head_is_not_good(columns, tmp_path):
+    """A sensor whose sign turns after a third of the log: the head explains itself."""
+    changed = {name: values.copy() for name, values in columns.items()}
+    changed["tau_shoulder"][200_000:] *= -1
+    path = tmp_path / "turned.parquet"
+    parquet.write_table(pyarrow.table(changed), path)
+    found = identify_long(example.NOMINAL, path, head=HEAD, **FILTERED)
+    assert not found.is_good
+    assert any("shoulder is not explained" in remark for remark in found.remarks), found.remarks
+

@@ -19,9 +19,10 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  denavit long plan tulip_leg --train leg.csv --head 2000 >plan.json
-  denavit long condense tulip_leg --train leg.csv --plan plan.json --pieces 0:1 >rows.jsonl
-  denavit long estimate tulip_leg --train leg.csv --head 2000 --plan plan.json --rows rows.jsonl")]
+  denavit simulate tulip_leg_identification -o leg.csv
+  denavit long plan tulip_leg_table34 --train leg.csv --head 2000 >p.json
+  denavit long condense tulip_leg_table34 --train leg.csv --plan p.json --pieces 0:1 >r.json
+  denavit long estimate tulip_leg_table34 --train leg.csv --head 2000 --plan p.json --rows r.json")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     work: Work,

@@ -2,9 +2,10 @@
 
 use super::error::Error;
 use super::estimate::long::LongRows;
-use super::estimate::{consistent, convergence, parameters, validate};
+use super::estimate::{Unexplained, Validation, consistent, convergence, parameters, validate};
 use super::identification::{Identification, Request, left_out_rows, shares};
-use denavit_plants::regression::StandardParameter;
+use crate::policy::unexplained::{LEFT, LEFT_ALIKE};
+use denavit_plants::regression::{RegressionModel, StandardParameter};
 
 impl Identification {
     /// That of a long log of whose head this is one, with the rows of the whole. Parameters,
@@ -26,7 +27,10 @@ impl Identification {
             true => rows.left(model, &phi, &head).relative,
             false => validate(model, &phi, held_out).relative,
         });
+        let mut unexplained = self.unexplained;
+        unexplained.extend(left_behind_the_head(model, &train, &head, &unexplained));
         Ok(Self {
+            unexplained,
             validate: (!held_out.is_empty()).then(|| validate(model, phi, held_out)),
             parameters: parameters(model, &found),
             convergence: convergence(model, &found),
@@ -39,4 +43,30 @@ impl Identification {
             ..self
         })
     }
+}
+
+/// The joints of whose torque nearly all is left of the whole, or much that is not left of the
+/// head: noise would be left of both.
+fn left_behind_the_head(
+    model: &RegressionModel,
+    whole: &Validation,
+    head: &Validation,
+    told: &[Unexplained],
+) -> Vec<Unexplained> {
+    let is_base = |name: &str| model.joints.iter().any(|one| one.is_base && one.name == name);
+    let of_head = |name: &str| {
+        head.joints.iter().find(|one| one.name == name).map_or(0.0, |one| one.relative)
+    };
+    let is_left =
+        |name: &str, share: f64| share > LEFT || share > LEFT_ALIKE && of_head(name) < LEFT_ALIKE;
+    let own = whole.joints.iter().filter(|one| is_left(&one.name, one.relative));
+    let own = own.filter(|one| !is_base(&one.name) && told.iter().all(|t| t.joint != one.name));
+    own.map(|one| Unexplained {
+        joint: one.name.clone(),
+        file: None,
+        share: one.relative,
+        rest_s: None,
+        beside: None,
+    })
+    .collect()
 }

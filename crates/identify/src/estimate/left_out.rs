@@ -120,6 +120,19 @@ impl LeftOut {
     /// What the options ask for before anything is known of friction; by default where the sign of
     /// a rate is not known, but rests that the torque follows the load in, if enough is left.
     pub(super) fn asked(model: &RegressionModel, logs: &[Conditioned], options: &Options) -> Self {
+        let mut asked = Self::unsure(model, logs, options);
+        if options.slow == SlowRows::Biasing {
+            // instruments have no rows of rests
+            if options.method != Method::Instrumental {
+                asked.add_rests(model, logs);
+            }
+            (0..logs.len()).map(LogIndex).for_each(|log| asked.keep_enough(log, logs));
+        }
+        asked
+    }
+
+    /// The same, rests among them, however little that leaves.
+    fn unsure(model: &RegressionModel, logs: &[Conditioned], options: &Options) -> Self {
         let of_log = |log: &Conditioned| -> Vec<Option<Vec<bool>>> {
             let slowest: Vec<f64> = match options.slow {
                 SlowRows::Biasing => {
@@ -143,15 +156,25 @@ impl LeftOut {
             let slow = |joint: usize| Some(log.slow(JointIndex(joint), slowest[joint], 1));
             (0..log.joints()).map(slow).collect()
         };
-        let mut asked = Self::of(logs.iter().map(of_log).collect());
-        if options.slow == SlowRows::Biasing {
-            // instruments have no rows of rests
-            if options.method != Method::Instrumental {
-                asked.add_rests(model, logs);
-            }
-            (0..logs.len()).map(LogIndex).for_each(|log| asked.keep_enough(log, logs));
+        Self::of(logs.iter().map(of_log).collect())
+    }
+
+    /// What the options ask for of a part of a log, and rows near reversals of joints, so often
+    /// widened, however little that leaves of it: other parts have more.
+    pub(super) fn of_part(
+        model: &RegressionModel,
+        log: &Conditioned,
+        options: &Options,
+        widened: &[(JointIndex, f64)],
+    ) -> Self {
+        let mut part = Self::unsure(model, std::slice::from_ref(log), options);
+        for &(joint, times) in widened {
+            let Some(mut near) = log.near_reversals(joint, times) else { continue };
+            let before = part.rows[0][joint.0].iter().flatten();
+            near.iter_mut().zip(before).for_each(|(near, before)| *near |= before);
+            part.rows[0][joint.0] = Some(near);
         }
-        asked
+        part
     }
 
     /// Leaves out nothing of joints of a log of which too little would be left.
@@ -175,19 +198,9 @@ impl LeftOut {
         logs: &[Conditioned],
         options: &Options,
     ) -> Self {
-        Self::ruled(model, logs, options, &self.widened)
-    }
-
-    /// What the options ask for of logs, and rows near reversals of joints, so often widened.
-    pub(super) fn ruled(
-        model: &RegressionModel,
-        logs: &[Conditioned],
-        options: &Options,
-        widened: &[(JointIndex, f64)],
-    ) -> Self {
-        let mut ruled = Self::asked(model, logs, options);
-        widened.iter().for_each(|&(joint, times)| _ = ruled.widen(logs, joint, times));
-        ruled
+        let mut others = Self::asked(model, logs, options);
+        self.widened.iter().for_each(|&(joint, times)| _ = others.widen(logs, joint, times));
+        others
     }
 
     /// Joints whose rows near reversals are left out, and the times they were widened to.

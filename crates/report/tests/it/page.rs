@@ -146,7 +146,9 @@ fn a_browser_shows_and_sorts_the_page() {
     let show = |page: &str| {
         std::fs::write(&file, page).unwrap();
         let output = Command::new(program)
+            // charts are made when they are seen: time passes as fast as the page lets it
             .args(["--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"])
+            .arg("--virtual-time-budget=5000")
             .arg(format!("--user-data-dir={}", directory.join("profile").display()))
             .arg(format!("file://{}", file.display()))
             .output()

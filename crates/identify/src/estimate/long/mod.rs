@@ -122,9 +122,9 @@ impl LongRows {
         options: &Options,
         whole: WholeLog,
     ) -> Self {
-        let logs = std::slice::from_ref(log);
-        // rests in which something else than the motor may hold a joint are not told from others
-        let left_out = LeftOut::ruled(model, logs, options, &rule.widened).without_rests();
+        // rests in which something else than the motor may hold a joint are not told from others:
+        // none counts
+        let left_out = LeftOut::of_part(model, log, options, &rule.widened);
         let condensed = condensed(model, log, &left_out, whole.part_length(whole.samples));
         let mut found = Self::none(model, log, whole);
         if let Some(halved) = halved(model, log, &left_out, whole) {

@@ -68,6 +68,12 @@ pub fn identify_long(long: LongLog<'_>, observer: &mut dyn Observer) -> Result<I
     long.answered(head, rows, &mut watched)
 }
 
+/// Whether a log can be read once alone, as what another program writes.
+fn is_stream(source: &LogSource) -> bool {
+    let found = source.file().and_then(|path| path.metadata().ok());
+    found.is_some_and(|found| !found.is_file() && !found.is_dir())
+}
+
 /// Adds rows that come later.
 fn add(rows: &mut Option<LongRows>, later: LongRows, is_same_part: bool) {
     match rows {
@@ -160,11 +166,15 @@ impl LongLog<'_> {
             LogSource::Memory { .. } => self.logs.clone(),
         };
         let head = Head::new(self.file, &logs, self.options, &model, &mut watched)?;
+        let LongPlan { rows, start_s, step_s, .. } = *plan;
+        if LongPlan::new(&head, Survey { rows, start_s, step_s }) != *plan {
+            let why = "the plan is of another head, or of other options";
+            return Err(self.wrong(why));
+        }
         let (mut rows, mut next) = (None, 0);
         for piece in pieces {
             let piece = piece?;
-            if piece.piece != next || piece.stretches != plan.stretches_of(next) {
-                let why = format!("piece {next} is not there, or not whole");
+            if let Some(why) = plan.wrong_piece(&piece, next) {
                 return Err(self.wrong(why));
             }
             next += 1;
@@ -211,6 +221,8 @@ impl LongLog<'_> {
         let Self { options, logs, .. } = self;
         let refused = if logs.train.len() != 1 {
             Some("one log is read piece by piece, and not several".to_owned())
+        } else if is_stream(&logs.train[0]) {
+            Some("a log that is read piece by piece is a file, which is read several times".into())
         } else if !is_of_triangles(options.method) {
             Some("least squares alone, weighted or not, forget the rows of a log".to_owned())
         } else if options.conditions.averaging != Averaging::No {
@@ -291,7 +303,9 @@ impl LongLog<'_> {
                     add(&mut rows, own, plan.has_long_parts());
                 }
             }
-            take(PieceRows { piece, stretches, rows });
+            let mut condensed = plan.piece(piece, stretches);
+            condensed.rows = rows;
+            take(condensed);
         }
         Ok(())
     }

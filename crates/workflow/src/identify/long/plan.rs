@@ -16,6 +16,9 @@ use std::ops::Range;
 const PLAN: &str = "denavit-long-plan/1";
 const ROWS: &str = "denavit-long-rows/1";
 
+/// Samples of which one is left, at most.
+const MOST_DECIMATED: usize = 100_000;
+
 /// How the pieces of a long log are condensed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LongPlan {
@@ -40,6 +43,8 @@ pub struct PieceRows {
     pub piece: usize,
     /// The stretches that are in it.
     pub stretches: Range<usize>,
+    /// Names the plan that they were condensed by.
+    plan: String,
     pub(super) rows: Option<LongRows>,
 }
 
@@ -150,9 +155,9 @@ impl LongPlan {
         let piece = (0..self.pieces()).find(holds);
         let piece = piece.ok_or_else(|| format!("there is no stretch {stretch} in the plan"))?;
         let first = self.stretches_of(piece).start;
-        let empty = || PieceRows { piece, stretches: first..first, rows: None };
-        let mut begun = before.unwrap_or_else(empty);
-        if begun.piece != piece || begun.stretches != (first..stretch) {
+        let mut begun = before.unwrap_or_else(|| self.piece(piece, first..first));
+        let is_other = begun.plan != self.key() || begun.piece != piece;
+        if is_other || begun.stretches != (first..stretch) {
             return Err(format!(
                 "stretch {stretch} follows stretches {first} to {stretch} of piece {piece}, and \
                  these are others"
@@ -169,15 +174,40 @@ impl LongPlan {
         options: &IdentifyOptions,
         name: &str,
     ) -> Result<(), Error> {
-        let own = identifies(model, options);
-        match own == self.identifies {
-            true => Ok(()),
-            false => Err(Cause::Long(
-                name.to_owned(),
-                format!("the plan is for {}, and this is {own}", self.identifies),
-            )
-            .into()),
+        let (own, joints) = (identifies(model, options), model.joints.len());
+        let is_joint = |one: &(JointIndex, f64)| one.0.0 < joints;
+        let why = if own != self.identifies {
+            format!("the plan is for {}, and this is {own}", self.identifies)
+        } else if self.position_noise.len() != joints || !self.rule.widened.iter().all(is_joint) {
+            format!("the plan has other joints than the {joints} of the model")
+        } else {
+            return Ok(());
+        };
+        Err(Cause::Long(name.to_owned(), why).into())
+    }
+
+    /// Names the plan by all that it says.
+    pub(super) fn key(&self) -> String {
+        let text = self.to_json().to_string();
+        // FNV-1a: it tells plans apart that are mixed up, and keeps nobody out
+        let hash = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+        });
+        format!("{hash:016x}")
+    }
+
+    /// Rows of a piece that has none yet.
+    pub(super) fn piece(&self, piece: usize, stretches: Range<usize>) -> PieceRows {
+        PieceRows { piece, stretches, plan: self.key(), rows: None }
+    }
+
+    /// Why rows are not those that come next; none if they are.
+    pub(super) fn wrong_piece(&self, piece: &PieceRows, next: usize) -> Option<String> {
+        if piece.plan != self.key() {
+            return Some(format!("piece {} was condensed by another plan", piece.piece));
         }
+        let is_next = piece.piece == next && piece.stretches == self.stretches_of(next);
+        (!is_next).then(|| format!("piece {next} is not there, or not whole"))
     }
 
     /// As JSON.
@@ -227,10 +257,12 @@ impl LongPlan {
         if file.format != PLAN {
             return Err(failed(format!("is `{}`, and no `{PLAN}`", file.format)));
         }
-        let is_number = |one: &f64| one.is_finite();
+        let is_number = |one: &f64| one.is_finite() && *one >= 0.0;
         let is_sound = file.start_s.is_finite()
             && file.step_s.is_finite()
             && file.step_s > 0.0
+            && (1..=MOST_DECIMATED).contains(&file.decimation)
+            && file.widened.iter().all(|one| one.times.is_finite() && one.times > 0.0)
             && file.position_noise.iter().all(is_number)
             && file.widened.iter().all(|one| one.joint < file.position_noise.len());
         let filter = file.filter.map(|FilterFile { order, cutoff_hz }| Filter { order, cutoff_hz });
@@ -256,8 +288,11 @@ impl LongPlan {
             identifies: file.identifies,
             stretches: file.stretches,
         };
+        if !is_sound {
+            return Err(failed("has numbers that no plan has".to_owned()));
+        }
         let count = plan.cut().map_err(failed)?.count();
-        match is_sound && count == plan.stretches && file.pieces == plan.pieces() {
+        match count == plan.stretches && file.pieces == plan.pieces() {
             true => Ok(plan),
             false => Err(failed("contradicts itself".to_owned())),
         }
@@ -269,6 +304,7 @@ impl PieceRows {
     pub fn to_json(&self) -> Value {
         json!({
             "format": ROWS,
+            "plan": self.plan,
             "piece": self.piece,
             "stretches": [self.stretches.start, self.stretches.end],
             "rows": self.rows.as_ref().map(LongRows::to_json),
@@ -291,6 +327,7 @@ impl PieceRows {
             Value::Null => None,
             rows => Some(LongRows::of_json(model, rows).map_err(|error| error.to_string())?),
         };
-        Ok(Self { piece, stretches: first..end, rows })
+        let plan = value["plan"].as_str().unwrap_or_default().to_owned();
+        Ok(Self { piece, stretches: first..end, plan, rows })
     }
 }

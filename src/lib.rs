@@ -40,7 +40,7 @@
 //!
 //! All of [`denavit_codegen`], in the order of its stages: [`arena`], [`expr`], [`number`],
 //! [`fundamental`], [`model`], [`effect`], [`function`], [`spatial`], [`kinematics`], [`regroup`],
-//! [`dynamics`], [`regressor`], [`derive`], [`program`], [`emit`], [`build_script`].
+//! [`dynamics`], [`regressor`], [`mod@derive`], [`program`], [`emit`], [`build_script`].
 //!
 //! # Errors
 //!

@@ -35,6 +35,9 @@ USUAL_HEAD = 1 << 19
 BATCH = 1 << 16
 """Rows that are read at once."""
 
+FEWEST = 1000
+"""Rows of a head, at least."""
+
 NUMBERS = ("int", "uint", "float", "double", "timestamp")
 """Beginnings of the names of types that are numbers here."""
 
@@ -57,6 +60,8 @@ class _Table:
         self.ends = np.cumsum(counts, dtype=np.int64)
         self.kinds = {field.name: str(field.type) for field in self.file.schema_arrow}
         self.names = [name for name, kind in self.kinds.items() if kind.startswith(NUMBERS)]
+        if len(self.kinds) < len(self.file.schema_arrow):
+            raise Error([Fault(str(path), None, None, "has two columns of one name", None)])
         said = self.file.schema_arrow.metadata or {}
         self.header = [(key.decode(), value.decode()) for key, value in sorted(said.items())
                        if key not in (b"pandas", b"ARROW:schema")]  # fmt: skip
@@ -87,6 +92,9 @@ class _Table:
         nanoseconds = column.cast("timestamp[ns]").cast("int64").to_numpy(zero_copy_only=False)
         if name not in self.epochs:
             group = self.file.read_row_group(0, columns=[name]).column(name)
+            if not group[0].is_valid:
+                cause = f"has no first time in its column `{name}`"
+                raise Error([Fault(str(self.path), None, None, cause, None)])
             self.epochs[name] = int(group[0].cast("timestamp[ns]").cast("int64").as_py())
         return np.asarray((nanoseconds - self.epochs[name]) / 1e9, dtype=np.float64)
 
@@ -147,7 +155,7 @@ def condensed(case: studies.Case) -> studies.Row:
 def _given(table: _Table, start: int, end: int) -> tuple[list[str], list[Columns]]:
     """Arguments for rows of a table, and these with a name for messages."""
     arguments, memory = _logs.given(train=table.read(start, end))
-    name = table.path.name if start == 0 else f"{table.path.name} from row {start + 1} on"
+    name = f"{table.path.name}, rows {start + 1} to {end}"
     return arguments, [(one[0], one[1], name, table.header, one[4]) for one in memory]
 
 
@@ -176,6 +184,8 @@ def identify_long(
     ``friction``, ``joint_parameters``, ``keep``, ``prior``, ``resolution``, ``accept_suspicious``.
     Rows stand at equal distances of time.
     """
+    if isinstance(head, bool) or not isinstance(head, int) or head < FEWEST:
+        raise _argument(f"`head` is {head!r}", f"a number of rows, {FEWEST} or more")
     table = _table(Path(_options.place(log, "`log`")).resolve())
     if time not in table.names:
         raise _argument(f"`{table.path.name}` has no column of numbers `{time}`", "`time` names it")

@@ -147,6 +147,13 @@ def test_what_is_no_long_log(columns, log, tmp_path):
         identify_long(example.NOMINAL, log, head=HEAD, method="huber")
     with pytest.raises(TypeError, match="no option average"):
         identify_long(example.NOMINAL, log, average=2.0)
+    for head in (2.5, True, 10):
+        with pytest.raises(denavit.ArgumentError, match="`head` is"):
+            identify_long(example.NOMINAL, log, head=head)
+    twice = pyarrow.table([columns["t"], columns["t"]], names=["t", "t"])
+    parquet.write_table(twice, tmp_path / "twice.parquet")
+    with pytest.raises(Error, match="two columns of one name"):
+        identify_long(example.NOMINAL, tmp_path / "twice.parquet")
     text = tmp_path / "log.csv"
     text.write_text("t,q_elbow\n")
     with pytest.raises(Error, match="Parquet"):

@@ -226,6 +226,12 @@ pub(crate) mod solve {
     pub(crate) const MOST_WEIGHT: f64 = 1e100;
 }
 
+/// `estimate/long/text.rs`: Rows of a piece of a long log as JSON.
+pub(crate) mod long {
+    /// What entries of a triangle are below: their squares are numbers.
+    pub(crate) const LARGEST: f64 = 1e150;
+}
+
 /// `estimate/unexplained.rs`: Joints whose torque an estimate does not explain, in all logs, in
 /// one of them, or while a joint rests.
 pub(crate) mod unexplained {

@@ -3,13 +3,11 @@
 use super::design::LimitCycle;
 use super::following::joint_gains;
 use super::planned::PlannedPhase;
+use crate::robustness::FALLBACK_FRICTION;
 use crate::scenario_file::{
     ContactFriction, JointLaw, ScenarioHead, ScenarioRun, list, number, scenario_file, sequence,
 };
 use denavit_plants::PlantModel;
-
-/// Friction where no-slip contact has no answer to an impact.
-const FALLBACK_FRICTION: f64 = 0.8;
 
 /// The scenario file of a gait; the same gait gives the same bytes.
 pub fn scenario_text(gait: &LimitCycle, model: &PlantModel, head: &ScenarioHead<'_>) -> String {

@@ -16,3 +16,7 @@ pub use outcome::Outcome;
 pub use parallel::Observer;
 pub use parallel::Opener;
 pub use push_map::{LeastPush, PushOptions, least_pushes};
+
+/// Friction that stands in where the no-slip law has no answer to an impact: disturbed robots
+/// scuff, and runs would end there.
+pub const FALLBACK_FRICTION: f64 = 0.8;

@@ -10,18 +10,14 @@ use denavit_walk::capture_step::{law_of, step_limits};
 use denavit_walk::comparison::{Compared, compare};
 use denavit_walk::poincare::{PoincareAnalysis, PoincareOptions, analyse};
 use denavit_walk::robustness::{
-    BasinOptions, BasinStart, CapturePush, CapturePushOptions, LeastPush, PushOptions, basin,
-    capture_pushes, grid, least_pushes, noise,
+    BasinOptions, BasinStart, CapturePush, CapturePushOptions, FALLBACK_FRICTION, LeastPush,
+    PushOptions, basin, capture_pushes, grid, least_pushes, noise,
 };
 use denavit_walk::{Error as WalkError, balance::check_walker};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::thread;
-
-/// Friction that stands in where the no-slip law has no answer to an impact: disturbed robots
-/// scuff, and runs would end there.
-const FALLBACK_FRICTION: f64 = 0.8;
 
 /// From where a gait is walked.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,10 +5,14 @@ use super::super::condensed::Condensed;
 use super::super::triangle::Triangle;
 use super::LongRows;
 use crate::error::Error;
+use crate::policy::long::LARGEST;
 use denavit_measure::LogIndex;
 use denavit_plants::regression::RegressionModel;
 use serde_json::{Value, json};
 use std::fmt;
+
+/// Rows of a triangle, at most: more than a century at 1 MHz.
+const MOST_ROWS: usize = 1 << 52;
 
 fn wrong(reason: impl fmt::Display) -> Error {
     Error::of_piece(reason.to_string())
@@ -35,10 +39,14 @@ impl LongRows {
         let samples = value["samples"].as_u64().ok_or_else(|| wrong("`samples` is no count"))?;
         let joints = model.joints.len();
         let half = |at: usize| condensed_of_json(model, &value["halved"][at]);
+        let torque_squares = numbers(&value["torque_squares"], joints, "`torque_squares`")?;
+        if torque_squares.iter().any(|squares| *squares < 0.0) {
+            return Err(wrong("`torque_squares` has a number below 0"));
+        }
         Ok(Self {
             condensed: condensed_of_json(model, &value["counted"])?,
             all: of_joints(model, &value["all"])?,
-            torque_squares: numbers(&value["torque_squares"], joints, "`torque_squares`")?,
+            torque_squares,
             samples: usize::try_from(samples).map_err(wrong)?,
             halved: [half(0)?, half(1)?],
         })
@@ -65,12 +73,19 @@ fn condensed_of_json(model: &RegressionModel, value: &Value) -> Result<Condensed
         let found = value[key].as_f64().filter(|found| found.is_finite());
         found.ok_or_else(|| wrong(format!("`{key}` is no number")))
     };
+    let end_s = numbers(&value["end_s"], parts.len(), "`end_s`")?;
+    let (independent, row_s) = (number("independent")?, number("row_s")?);
+    let is_in_order = end_s.windows(2).all(|pair| pair[0] < pair[1]);
+    let is_share = (f64::MIN_POSITIVE..=1.0).contains(&independent);
+    if !(is_in_order && is_share && row_s > 0.0) {
+        return Err(wrong("times, or shares of rows, that no log has"));
+    }
     Ok(Condensed {
         log_of_part: vec![LogIndex(0); parts.len()],
-        end_s: numbers(&value["end_s"], parts.len(), "`end_s`")?,
+        end_s,
         parts,
-        independent: vec![number("independent")?],
-        row_s: vec![number("row_s")?],
+        independent: vec![independent],
+        row_s: vec![row_s],
         rank: model.rank(),
         pattern: model.pattern().to_vec(),
     })
@@ -118,6 +133,12 @@ impl Triangle {
         let rows = rows.ok_or_else(|| wrong("`rows` is no count"))?;
         let entries = numbers(&value["r"], size * (size + 1) / 2, "`r`")?;
         let sums = numbers(&value["sums"], size, "`sums`")?;
+        let is_empty = entries.iter().chain(&sums).all(|entry| *entry == 0.0);
+        // their squares are to be numbers, and no rows are no sums
+        let is_possible = entries.iter().all(|entry| entry.abs() < LARGEST);
+        if !is_possible || rows == 0 && !is_empty || rows > MOST_ROWS {
+            return Err(wrong("a triangle that no rows have"));
+        }
         Ok(Self::of_entries(&entries, sums, rows))
     }
 }

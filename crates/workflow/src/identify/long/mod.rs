@@ -83,8 +83,9 @@ fn add(rows: &mut Option<LongRows>, later: LongRows, is_same_part: bool) {
 }
 
 impl LongLog<'_> {
-    /// What its head says of it, for those who condense it. `head` is that of a log that is read
-    /// elsewhere, with its number of rows and the time of the last one; none reads the log's file.
+    /// What its head says of it, for those who condense it. Where the log is read elsewhere, its
+    /// head is given as the log, and `elsewhere` is the number of all rows, with the time of the
+    /// last one as its column has it.
     ///
     /// # Errors
     /// As of [`identify_long`]; or the log is no longer than its head.
@@ -314,7 +315,8 @@ impl LongLog<'_> {
     fn head_logs(&self, model: &RegressionModel) -> Result<Logs, Error> {
         let mut window = Window::open(self.logs, &self.robot(model))?;
         let log = Arc::new(window.rows(0..self.head_rows)?);
-        let head = LogSource::Memory { name: self.name(), log };
+        let name = format!("{}, its first {} rows", self.name(), self.head_rows);
+        let head = LogSource::Memory { name, log };
         Ok(Logs { train: vec![head], ..self.logs.clone() })
     }
 

@@ -9,14 +9,14 @@ mod text;
 use super::condensed::{Condensed, PARTS, part_length, plain};
 use super::half_cutoff::SAMPLES;
 use super::least_squares::{Estimate, Fit, Method, Options};
-use super::left_out::LeftOut;
+use super::left_out::{LeftOut, SlowRows};
 use super::rows::BlockMaker;
 use super::triangle::Triangle;
 use super::validate::{JointResidual, Validation};
 use crate::error::Error;
 use denavit_measure::condition::{Conditioned, Piece};
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
-use denavit_plants::regression::{RegressionJoint, RegressionModel};
+use denavit_plants::regression::{CoulombLaw, RegressionJoint, RegressionModel};
 
 /// What the head of a long log says of the rows of the rest.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -237,9 +237,25 @@ fn condensed(
 }
 
 impl Estimate {
-    /// What the head of a long log says of the rows of the rest.
-    pub fn row_rule(&self) -> RowRule {
-        RowRule { widened: self.left_out.widened().to_vec() }
+    /// What the head of a long log, conditioned, says of the rows of the rest. By default rows near
+    /// velocity reversals are left out of every joint that has enough others: how much they bias
+    /// friction is compared with its error, which becomes smaller with the log, and the bias does
+    /// not.
+    pub fn row_rule(
+        &self,
+        model: &RegressionModel,
+        head: &[Conditioned],
+        options: &Options,
+    ) -> RowRule {
+        let mut left_out = self.left_out.clone();
+        if options.slow == SlowRows::Biasing && model.law == CoulombLaw::Sign {
+            for joint in model.coulomb().iter().map(|(joint, _)| JointIndex(*joint)) {
+                if left_out.widened().iter().all(|(widened, _)| *widened != joint) {
+                    left_out.widen(head, joint, 1.0);
+                }
+            }
+        }
+        RowRule { widened: left_out.widened().to_vec() }
     }
 
     /// The estimate of a long log of whose head this one is: by least squares, weighted perhaps.

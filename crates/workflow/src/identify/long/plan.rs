@@ -110,7 +110,7 @@ impl LongPlan {
             start_s,
             step_s,
             how,
-            rule: head.found.estimate.row_rule(),
+            rule: head.found.estimate.row_rule(work.model, &head.read.train, &head.how),
             position_noise: head.read.position_noise.clone(),
             identifies: identifies(work.model, work.options),
             stretches: 0,

@@ -3,6 +3,7 @@
 
 figures.py gather GENERATOR OUT CASE..   answers of the command to OUT/results.json, by adapt.py
 figures.py figures GENERATOR OUT         what is asked of a run, with exact intervals of 95 %
+figures.py record GENERATOR OUT          the same as JSON, for runs that are added up
 
 The score of a case is score.py's own (its verbose lines); counted here are what it does not print:
 intervals, answers that nothing is missing, values against their stated errors, and times.
@@ -99,46 +100,60 @@ def errors_of_values(truth, out):
                         yield wrong / (entry["std"] * abs(slope))
 
 
-def figures(generator, out):
+def measured(generator, out):
+    """Counts (hits, cases) by name, and the numbers whose medians are told."""
     truth = json.loads((out / "truth.json").read_text())["cases"]
     results = json.loads((out / "results.json").read_text())
     records = scored(generator, out)
+    counts = {}
     groups = [("strong and medium", ("strong", "medium")),
               ("weak", ("weak",)), ("all", ("strong", "medium", "weak"))]
     for name, strengths in groups:
         these = [record for case, record in records.items() if truth[case]["strength"] in strengths]
-        line(f"{name}: effect and joint", sum(bool(r["top_ej"]) for r in these), len(these))
-    line("a wrong extra name", sum(r["extra"] for r in records.values()), len(records))
+        hits = sum(bool(record["top_ej"]) for record in these)
+        counts[f"{name}: effect and joint"] = hits, len(these)
+    counts["a wrong extra name"] = sum(r["extra"] for r in records.values()), len(records)
     controls = [case for case in truth if truth[case]["kind"] == "none"]
 
     def is_false(case):
         may = {"unknown"} | ({"inertial_mismatch"} if truth[case]["variant"] == "perturbed" else set())
         return any(effect["effect"] not in may for effect in results[case]["effects"])
 
-    line("nothing hidden: a name", sum(map(is_false, controls)), len(controls))
+    counts["nothing hidden: a name"] = sum(map(is_false, controls)), len(controls)
     clean = [case for case in controls if results[case].get("verdict") == "nothing_missing"]
-    line("nothing hidden: nothing missing, it says", len(clean), len(controls))
+    counts["nothing hidden: nothing missing, it says"] = len(clean), len(controls)
     outside = [case for case in truth if truth[case]["kind"] == "outside"]
     unnamed = [case for case in outside
                if all(effect["effect"] == "unknown" for effect in results[case]["effects"])]
-    line("outside the catalogue: refused or unnamed", len(unnamed), len(outside))
-    closed = [record["cl"] for record in records.values() if record["cl"] is not None]
-    if closed:
-        print(f"median share closed                              {statistics.median(closed):.3f}")
+    counts["outside the catalogue: refused or unnamed"] = len(unnamed), len(outside)
     errors = list(errors_of_values(truth, out))
-    line("values within 3 stated errors", sum(error <= 3 for error in errors), len(errors))
-    if errors:
-        print(f"median of error over stated error                {statistics.median(errors):.2f}")
+    counts["values within 3 stated errors"] = sum(error <= 3 for error in errors), len(errors)
+    closed = [record["cl"] for record in records.values() if record["cl"] is not None]
     paths = [out / "answers" / case / "seconds" for case in truth]
     seconds = sorted(float(path.read_text()) for path in paths if path.exists())
-    if seconds:
+    return {"counts": counts, "closed": closed, "errors": errors, "seconds": seconds}
+
+
+def figures(generator, out):
+    found = measured(generator, out)
+    for name, (hits, count) in found["counts"].items():
+        line(name, hits, count)
+    if found["closed"]:
+        print(f"median share closed                              "
+              f"{statistics.median(found['closed']):.3f}")
+    if found["errors"]:
+        print(f"median of error over stated error                "
+              f"{statistics.median(found['errors']):.2f}")
+    if found["seconds"]:
         print(f"seconds a case                                   median "
-              f"{statistics.median(seconds):.1f}, most {seconds[-1]:.1f}")
+              f"{statistics.median(found['seconds']):.1f}, most {found['seconds'][-1]:.1f}")
 
 
 if __name__ == "__main__":
     what, generator, out, *cases = sys.argv[1:]
     if what == "gather":
         gather(generator, pathlib.Path(out), cases)
+    elif what == "record":
+        print(json.dumps(measured(generator, pathlib.Path(out))))
     else:
         figures(generator, pathlib.Path(out))

@@ -14,7 +14,7 @@ import hashlib
 import json
 import math
 import os
-import re
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -27,9 +27,7 @@ from typing import Any
 from denavit import studies
 from denavit.errors import Error, Fault
 
-COUNTS = re.compile(r"^([a-z][a-z0-9 ,:]*[a-z0-9])  +([0-9]+) of +([0-9]+)  ", re.MULTILINE)
-"""A line of a score that counts cases."""
-FOREIGN = Path(__file__).parents[1] / "foreign" / "run"
+FOREIGN = Path(__file__).parents[1] / "foreign"
 
 
 @lru_cache
@@ -108,6 +106,8 @@ def blind(case: studies.Case) -> studies.Row:
     kind=str,
     hidden=list[str],
     counted=list[str],
+    closed=list[float],
+    errors=list[float],
     verdict=str,
     named=list[str],
     log_odds=list[float],
@@ -120,16 +120,18 @@ def foreign(case: studies.Case) -> studies.Row:
     """A case of the foreign bench. Options: ``generator``, its folder; ``denavit``, the command;
     ``venv``, an environment that has MuJoCo and Pinocchio. The seed is that of the study.
     """
-    denavit = case.options["denavit"]
+    denavit, generator = case.options["denavit"], case.options["generator"]
     with tempfile.TemporaryDirectory() as inside:
         told = {"JOBS": "1", "ONLY": str(case.index), "VENV": case.options["venv"]}
-        command = [str(FOREIGN), case.options["generator"], str(case.seed), inside, denavit]
+        command = [str(FOREIGN / "run"), generator, str(case.seed), inside, denavit]
         _run(command, env=os.environ | told)
+        python = str(Path(case.options["venv"]) / "bin" / "python")
+        figures = [python, str(FOREIGN / "figures.py"), "record", generator, inside]
+        found = json.loads(_run(figures))
         out = Path(inside)
         truth = json.loads((out / "truth.json").read_text())["cases"]
         (file,) = (out / "answers").glob("*/diagnosis.json")
         name, text = file.parent.name, file.read_text()
-        scored = (out / "score.txt").read_text()
     own = truth[name]
     return {
         "name": name,
@@ -137,13 +139,15 @@ def foreign(case: studies.Case) -> studies.Row:
         "strength": own["strength"],
         "kind": own["kind"],
         "hidden": [f"{one['effect']} at {one['joint']}" for one in own["effects"]],
-        # counts alone: times are others in every run
-        "counted": [f"{each[0]}: {each[1]} of {each[2]}" for each in COUNTS.findall(scored)],
+        # no times: they are others in every run
+        "counted": [f"{key}: {hits} of {of}" for key, (hits, of) in found["counts"].items()],
+        "closed": [round(share, 6) for share in found["closed"]],
+        "errors": [round(error, 6) for error in found["errors"]],
         "build": _digest(denavit),
     } | _answered(json.loads(text) if text else {})
 
 
-def summed(rows: Iterable[dict[str, Any]]) -> list[str]:
+def summed(rows: list[dict[str, Any]]) -> list[str]:
     """Lines of a table of Markdown: the counts of all cases of the foreign bench."""
     hits: Counter[str] = Counter()
     counts: Counter[str] = Counter()
@@ -154,7 +158,12 @@ def summed(rows: Iterable[dict[str, Any]]) -> list[str]:
             hits[name] += int(hit)
             counts[name] += int(count)
     lines = ["| what | cases | of | interval of 95 % |", "|---|---:|---:|---|"]
-    return lines + [_line(name, hits[name], count) for name, count in counts.items()]
+    lines += [_line(name, hits[name], count) for name, count in counts.items() if count]
+    for name, column in (("share closed", "closed"), ("error over stated error", "errors")):
+        numbers = [number for row in rows for number in row[column]]
+        if numbers:
+            lines += ["", f"Median {name}: {statistics.median(numbers):.2f} of {len(numbers)}."]
+    return lines
 
 
 def _line(name: str, hits: int, count: int) -> str:

@@ -10,6 +10,7 @@ rows, anywhere and in any order, and these are added. Needs pyarrow; ``runner`` 
 
 from __future__ import annotations
 
+import io
 import json
 import tempfile
 from collections.abc import Iterator
@@ -125,8 +126,9 @@ def _model(text: bytes) -> Model:
 
 @studies.rows(rows=str)
 def condensed(case: studies.Case) -> studies.Row:
-    """The rows of a piece of a long log. Inputs: ``model`` and ``plan``. Options: ``log``, the path
-    of a Parquet file that every worker can read, and ``arguments`` of the command."""
+    """The rows of a piece of a long log. Inputs: ``model`` and ``plan``, and ``validate``, columns of
+    logs for validation. Options: ``log``, the path of a Parquet file that every worker can read,
+    ``arguments`` of the command, and ``judges``, which of them ``validate`` has."""
     plan = json.loads(case.inputs["plan"])
     table = _table(Path(case.options["log"]))
     if table.rows != plan["rows"] or table.bytes != case.options["stamp"][0]:
@@ -136,8 +138,9 @@ def condensed(case: studies.Case) -> studies.Row:
     text = None
     with _options.folder() as inside:
         model = _options.file_of(_model(case.inputs["model"]), "model", inside)
-        for name, content in case.inputs.items():
-            (inside / f"{name}.json").write_bytes(content)
+        for name in case.inputs.keys() & {"plan", "columns"}:
+            (inside / f"{name}.json").write_bytes(case.inputs[name])
+        judges = _unpacked(case.inputs["validate"], case.options["judges"])
         for stretch in range(first, end):
             start, stop = plan["rows_of_stretches"][stretch]
             given, memory = _given(table, start, stop)
@@ -148,8 +151,25 @@ def condensed(case: studies.Case) -> studies.Row:
             if text is not None:
                 (inside / "rows.jsonl").write_text(text)
                 arguments += ["--onto", str(inside / "rows.jsonl")]
-            text = json.dumps(_options.answered(arguments, None, memory)[0])
+            text = json.dumps(_options.answered(arguments, None, [*memory, *judges])[0])
     return {"rows": text}
+
+
+def _packed(memory: list[Columns]) -> tuple[bytes, list[list[Any]]]:
+    """Logs in memory as bytes, and where each stands with the names of its columns."""
+    file = io.BytesIO()
+    columns = [values for one in memory for _, values in one[4]]
+    np.savez(file, *columns)
+    return file.getvalue(), [[at, log, [name for name, _ in named]]
+                             for _, at, log, _, named in memory]  # fmt: skip
+
+
+def _unpacked(packed: bytes, names: list[list[Any]]) -> list[Columns]:
+    """Logs for validation as they were packed."""
+    with np.load(io.BytesIO(packed)) as file:
+        values = iter([file[f"arr_{at}"] for at in range(len(file.files))])
+    return [("validate", at, log, [], [(name, next(values)) for name in named])
+            for at, log, named in names]  # fmt: skip
 
 
 def _given(table: _Table, start: int, end: int) -> tuple[list[str], list[Columns]]:
@@ -176,7 +196,9 @@ def identify_long(
 
     ``head`` is how many of its rows are identified as any log is, fewer than all; ``time`` the
     column of its times, which ``columns`` maps to ``t`` if it has another name. What the file says
-    of itself (``torque_side``, ``model``) counts as in any log.
+    of itself (``torque_side``, ``model``) counts as in any log. ``validate`` are logs that judge the
+    answer, which are held as a whole; one that is a part of ``log`` is told, and the answer is no
+    good one then.
     ``runner`` computes the pieces (:func:`denavit.studies.on_ray.on_ray` on many machines, each of
     which reads the file by the same path); ``part`` is where rows of pieces are kept, so that a run
     that was broken off goes on. ``options`` are those of :func:`denavit.identify`: ``method``
@@ -204,18 +226,26 @@ def identify_long(
         planning += [f"--rows={table.rows}", f"--end={end!r}"]
         plan, _, _ = _options.answered(planning, progress, memory)
         inputs["plan"] = json.dumps(plan).encode()
-        stamp = list(_stamp(table.path))
-        given = {"log": str(table.path), "stamp": stamp, "arguments": arguments}
+        judged, judges = _logs.given(validate=validate)
+        # workers run elsewhere
+        is_named = {"--validate", *(one[2] for one in judges)}
+        judged = [one if one in is_named else str(Path(one).resolve()) for one in judged]
+        inputs["validate"], names = _packed(judges)
+        given = {
+            "log": str(table.path),
+            "stamp": list(_stamp(table.path)),
+            "arguments": [*arguments, *judged],
+            "judges": names,
+        }
         study = studies.Study("long", condensed, plan["pieces"], inputs=inputs, options=given)
         (inside / "plan.json").write_bytes(inputs["plan"])
         with open(inside / "rows.jsonl", "w", encoding="utf-8") as file:
             for row in _computed(study, runner, part, progress):
                 file.write(row["rows"] + "\n")
-        judged, more = _logs.given(validate=validate)
         estimating = ["long", "estimate", place, *of_head, *judged, *mapped, *arguments]
         estimating += ["--plan", str(inside / "plan.json"), "--rows", str(inside / "rows.jsonl")]
         out = inside / "updated.json"
-        found, refused = answered_with_model(estimating, out, progress, [*memory, *more])
+        found, refused = answered_with_model(estimating, out, progress, [*memory, *judges])
         updated = None if refused else updated_model(out, robot)
     return answer(Identification, found, updated=updated, update_refused=refused)
 

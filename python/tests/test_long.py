@@ -193,3 +193,20 @@ def test_what_is_wrong_behind_the_head_is_not_good(columns, tmp_path):
     assert not found.is_good
     assert any("shoulder is not explained" in remark for remark in found.remarks), found.remarks
 
+
+def test_a_part_of_the_rest_does_not_judge(columns, log, tmp_path):
+    """Of 50 s, by a file and in memory, found by processes that read the log elsewhere."""
+    part = {name: values[400_000:450_000] for name, values in columns.items()}
+    path = tmp_path / "part.parquet"
+    parquet.write_table(pyarrow.table(part), path)
+    csv = tmp_path / "part.csv"
+    names = list(part)
+    np.savetxt(csv, np.column_stack(list(part.values())), delimiter=",", header=",".join(names),
+               comments="", fmt="%.12g")  # fmt: skip
+    for judge, name in ((part, "validate"), (str(csv), "part.csv")):
+        found = identify_long(
+            example.NOMINAL, log, judge, head=HEAD, runner=in_processes(2), **FILTERED
+        )
+        assert not found.is_good
+        told = [one for one in found.remarks if "arm.parquet, rows" in one]
+        assert len(told) == 1 and name in told[0], found.remarks

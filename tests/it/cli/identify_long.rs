@@ -16,13 +16,13 @@ const MODEL: &str = r#"{
     "body": {"mass": 2, "com": [-0.2, 0, 0], "inertia": {"zz": 0.05}, "about": "com"}}]
 }"#;
 
-/// Its log for five minutes: two waves, and the torque of its equation.
+/// Its log for five minutes: two waves that never repeat together, and the torque of its equation.
 fn pendulum(directory: &Directory) {
     let mut text = String::from("t,q_swing,tau_swing\n");
     for row in 0..ROWS {
         let t = 1e-3 * row as f64;
         let [mut q, mut qdd] = [0.0; 2];
-        for (hz, size) in [(0.37, 0.7), (0.91, 0.3)] {
+        for (hz, size) in [(0.3713, 0.7), (0.9137, 0.3)] {
             let w = TAU * hz;
             q += size * (w * t).sin();
             qdd -= size * w * w * (w * t).sin();
@@ -95,6 +95,30 @@ fn pieces_give_the_values_of_the_closed_form_and_the_bytes_of_one_process() {
     words.extend(of_plan);
     let other = run(&directory, &words, &[]);
     assert!(other.code == code && other.stderr.contains("the plan is for"), "{}", other.stderr);
+}
+
+/// A log for validation that was cut out of the rest, its clock begun anew: told once, by the
+/// stretch that it is in.
+#[test]
+fn a_part_of_the_rest_does_not_judge() {
+    let directory = Directory::new("identify_long_part");
+    pendulum(&directory);
+    let log = fs::read_to_string(directory.path.join("log.csv")).expect("written");
+    let mut part = String::from("t,q_swing,tau_swing\n");
+    for (row, line) in log.lines().skip(150_000).take(60_000).enumerate() {
+        let (_, numbers) = line.split_once(',').expect("columns");
+        writeln!(part, "{:.3},{numbers}", 1e-3 * row as f64).expect("text grows");
+    }
+    fs::write(directory.path.join("part.csv"), part).expect("written");
+    let more = ["--head", "100000", "--validate", "part.csv"];
+    let judged = run(&directory, &["identify", "--long"], &more);
+    assert_eq!(judged.code, Some(1), "{}", judged.stderr);
+    let found: Value = serde_json::from_str(&judged.stdout).expect("JSON");
+    let remarks = found["remarks"].as_array().expect("a list");
+    let told = |one: &&Value| one.as_str().is_some_and(|one| one.contains("says the same as"));
+    let told: Vec<&Value> = remarks.iter().filter(told).collect();
+    let [Value::String(told)] = told[..] else { panic!("{remarks:?}") };
+    assert!(told.starts_with("part.csv: says the same as log.csv from row 1"), "{told}");
 }
 
 /// A log no longer than its head is identified as any log is.

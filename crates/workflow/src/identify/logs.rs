@@ -262,6 +262,18 @@ impl<'a, 'r, 'w, 'o> Reader<'a, 'r, 'w, 'o> {
         }
     }
 
+    /// A log for validation, conditioned as the stretches of a long log are; none if it is too short
+    /// for that.
+    pub(super) fn as_stretch(
+        &mut self,
+        source: &LogSource,
+        how: &Conditioning,
+    ) -> Result<Option<Conditioned>, Error> {
+        let log = self.measured(source)?;
+        let log = Conditioned::new(log, &self.names, how).ok();
+        Ok(log.map(|log| self.without_known(log).0))
+    }
+
     /// A conditioned log without laws that are known and torques of idle motors, and their joints.
     fn without_known(&self, mut log: Conditioned) -> (Conditioned, Vec<JointIndex>) {
         let Work { laws, model, .. } = self.work;

@@ -5,19 +5,21 @@
 //! remembers, to triangles, which are added. Pieces of the log can so be condensed anywhere, in any
 //! order, and are added in theirs: the same numbers to the last bit.
 
+mod condensing;
 mod plan;
 mod reading;
 
 use super::estimation::Estimation;
-use super::logs::Reader;
-use super::{Head, Identified, IdentifyOptions, Work, regression};
+use super::{Head, Identified, IdentifyOptions, regression};
 use crate::error::{Cause, Error};
 use crate::files::Files;
 use crate::logs::{LogSource, Logs};
-use crate::observer::{Observer, Reading, Stage, Watched};
+use crate::observer::{Observer, Stage, Watched};
 use crate::robot_file::RobotFile;
-use denavit_identify::estimate::long::{LongRows, WholeLog, is_of_triangles};
+use condensing::{Condenser, Whole};
+use denavit_identify::estimate::long::is_of_triangles;
 use denavit_measure::condition::Averaging;
+use denavit_measure::log::LogRemark;
 use denavit_plants::regression::RegressionModel;
 pub use plan::{LongPlan, PieceRows};
 use reading::{Survey, Window};
@@ -58,28 +60,15 @@ pub fn identify_long(long: LongLog<'_>, observer: &mut dyn Observer) -> Result<I
     let logs = long.head_logs(&model)?;
     let head = Head::new(long.file, &logs, long.options, &model, &mut watched)?;
     let plan = long.planned(&head, survey)?;
-    let mut rows: Option<LongRows> = None;
-    let all = 0..plan.pieces();
-    long.each_piece(&model, &plan, all, &mut watched, |piece| {
-        if let Some(piece) = piece.rows {
-            add(&mut rows, piece, false);
-        }
-    })?;
-    long.answered(head, rows, &mut watched)
+    let mut whole = Whole::default();
+    long.each_piece(&model, &plan, 0..plan.pieces(), &mut watched, |piece| whole.add(piece))?;
+    long.answered(head, whole, &mut watched)
 }
 
 /// Whether a log can be read once alone, as what another program writes.
 fn is_stream(source: &LogSource) -> bool {
     let found = source.file().and_then(|path| path.metadata().ok());
     found.is_some_and(|found| !found.is_file() && !found.is_dir())
-}
-
-/// Adds rows that come later.
-fn add(rows: &mut Option<LongRows>, later: LongRows, is_same_part: bool) {
-    match rows {
-        Some(rows) => rows.add(later, is_same_part),
-        None => *rows = Some(later),
-    }
 }
 
 impl LongLog<'_> {
@@ -120,11 +109,8 @@ impl LongLog<'_> {
         let model = self.model()?;
         plan.check(&model, self.options, &self.name())?;
         let mut piece = plan.piece_of(stretch, before).map_err(|why| self.wrong(why))?;
-        let source = self.logs.train[0].clone();
-        let rows = self.stretch(&model, plan, (stretch, &source), &mut watched)?;
-        if let Some(rows) = rows {
-            add(&mut piece.rows, rows, plan.has_long_parts());
-        }
+        let condenser = Condenser::new(self, &model, plan, &mut watched)?;
+        condenser.add(&mut piece, stretch, &self.logs.train[0], &mut watched)?;
         Ok(piece)
     }
 
@@ -172,21 +158,19 @@ impl LongLog<'_> {
             let why = "the plan is of another head, or of other options";
             return Err(self.wrong(why));
         }
-        let (mut rows, mut next) = (None, 0);
+        let (mut whole, mut next) = (Whole::default(), 0);
         for piece in pieces {
             let piece = piece?;
             if let Some(why) = plan.wrong_piece(&piece, next) {
                 return Err(self.wrong(why));
             }
             next += 1;
-            if let Some(piece) = piece.rows {
-                add(&mut rows, piece, false);
-            }
+            whole.add(piece);
         }
         if next != plan.pieces() {
             return Err(self.wrong(format!("piece {next} of {} is not there", plan.pieces())));
         }
-        self.answered(head, rows, &mut watched)
+        self.answered(head, whole, &mut watched)
     }
 
     /// Rows of pieces that were written as lines of JSON, one after the other.
@@ -246,35 +230,6 @@ impl LongLog<'_> {
         }
     }
 
-    /// The rows of a stretch, whose log is given; none where nothing moves.
-    fn stretch(
-        &self,
-        model: &RegressionModel,
-        plan: &LongPlan,
-        (number, source): (usize, &LogSource),
-        watched: &mut Watched<'_>,
-    ) -> Result<Option<LongRows>, Error> {
-        let mut logs = self.logs.clone();
-        // what only a whole log can show is asked of its head
-        logs.accepts_suspicious = true;
-        let robot = &self.file.apart.robot;
-        let laws = &self.file.apart.laws;
-        let work = Work { logs: &logs, options: self.options, robot, laws, model };
-        let mut reading = Reading::needed(watched, Stage::Condensing, 1);
-        let mut reader = Reader::new(work, &mut reading)?;
-        let clock = plan.clock(self.logs.accepts_suspicious);
-        let cut = plan.cut().map_err(|why| self.wrong(why))?;
-        let log = reader.stretch(source, &cut.get(number), clock, &plan.how)?;
-        let whole = WholeLog {
-            samples: cut.kept(),
-            inner: cut.inner(),
-            stretches: cut.count(),
-            start_s: plan.start_s,
-        };
-        let how = self.options.estimate(model, plan.position_noise.clone())?;
-        Ok(log.map(|log| LongRows::of_stretch(model, &log, &plan.rule, &how, whole)))
-    }
-
     /// Calls `take` with the rows of each piece, which are read from the log's file.
     fn each_piece(
         &self,
@@ -284,29 +239,24 @@ impl LongLog<'_> {
         watched: &mut Watched<'_>,
         mut take: impl FnMut(PieceRows),
     ) -> Result<(), Error> {
-        let cut = plan.cut().map_err(|why| self.wrong(why))?;
+        let condenser = Condenser::new(self, model, plan, watched)?;
         let mut window = Window::open(self.logs, &self.robot(model))?;
         let count = pieces.len() as f64;
-        for (done, piece) in pieces.enumerate() {
-            let stretches = plan.stretches_of(piece);
-            let mut rows = None;
-            for number in stretches.clone() {
+        for (done, number) in pieces.enumerate() {
+            let stretches = plan.stretches_of(number);
+            let mut piece = plan.piece(number, stretches.clone());
+            for stretch in stretches {
                 let share = done as f64 / count;
                 if !watched.share(Stage::Condensing, share) {
                     return Err(Cause::Stopped.into());
                 }
-                let stretch = cut.get(number);
-                let name = format!("{} from row {} on", self.name(), stretch.read.start + 1);
-                let log = Arc::new(window.rows(stretch.read)?);
+                let rows = condenser.read(stretch);
+                let name = format!("{} from row {} on", self.name(), rows.start + 1);
+                let log = Arc::new(window.rows(rows)?);
                 let source = LogSource::Memory { name, log };
-                let own = self.stretch(model, plan, (number, &source), watched)?;
-                if let Some(own) = own {
-                    add(&mut rows, own, plan.has_long_parts());
-                }
+                condenser.add(&mut piece, stretch, &source, watched)?;
             }
-            let mut condensed = plan.piece(piece, stretches);
-            condensed.rows = rows;
-            take(condensed);
+            take(piece);
         }
         Ok(())
     }
@@ -324,11 +274,16 @@ impl LongLog<'_> {
     fn answered(
         &self,
         head: Head<'_>,
-        rows: Option<LongRows>,
+        whole: Whole,
         watched: &mut Watched<'_>,
     ) -> Result<Identified, Error> {
-        let rows = rows.ok_or_else(|| self.wrong("no joint moves".to_owned()))?;
-        let Head { estimation, read, how, found, same, .. } = head;
+        let rows = whole.rows.ok_or_else(|| self.wrong("no joint moves".to_owned()))?;
+        let Head { estimation, read, how, found, mut same, .. } = head;
+        for (file, other) in whole.same {
+            if same.iter().all(|(told, _)| *told != file) {
+                same.push((file, LogRemark::SameAs { other }));
+            }
+        }
         let Estimation { work, .. } = estimation;
         let failed = |error| Cause::Identify(work.model.model.clone(), error);
         let found = found.of_long(estimation.request(&read, &how), &rows).map_err(failed)?;

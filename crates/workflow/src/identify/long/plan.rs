@@ -46,6 +46,8 @@ pub struct PieceRows {
     /// Names the plan that they were condensed by.
     plan: String,
     pub(super) rows: Option<LongRows>,
+    /// Logs for validation, each with a stretch that says the same.
+    pub(super) same: Vec<(String, String)>,
 }
 
 /// A plan as its file has it.
@@ -198,7 +200,7 @@ impl LongPlan {
 
     /// Rows of a piece that has none yet.
     pub(super) fn piece(&self, piece: usize, stretches: Range<usize>) -> PieceRows {
-        PieceRows { piece, stretches, plan: self.key(), rows: None }
+        PieceRows { piece, stretches, plan: self.key(), rows: None, same: Vec::new() }
     }
 
     /// Why rows are not those that come next; none if they are.
@@ -309,6 +311,7 @@ impl PieceRows {
             "piece": self.piece,
             "stretches": [self.stretches.start, self.stretches.end],
             "rows": self.rows.as_ref().map(LongRows::to_json),
+            "same": self.same,
         })
     }
 
@@ -329,6 +332,8 @@ impl PieceRows {
             rows => Some(LongRows::of_json(model, rows).map_err(|error| error.to_string())?),
         };
         let plan = value["plan"].as_str().unwrap_or_default().to_owned();
-        Ok(Self { piece, stretches: first..end, plan, rows })
+        let same = serde_json::from_value(value["same"].clone());
+        let same = same.map_err(|error| format!("`same`: {error}"))?;
+        Ok(Self { piece, stretches: first..end, plan, rows, same })
     }
 }

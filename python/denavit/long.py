@@ -215,7 +215,13 @@ def identify_long(
     with _options.folder() as inside:
         effects, place = as_place(robot, inside)
         arguments = [*effects, *_arguments(options, head)]
-        inputs = {"model": robot.source.encode()}
+        judged, judges = _logs.given(validate=validate)
+        # workers run elsewhere
+        is_named = {"--validate", *(one[2] for one in judges)}
+        judged = [one if one in is_named else str(Path(one).resolve()) for one in judged]
+        packed, names = _packed(judges)
+        arguments += judged
+        inputs = {"model": robot.source.encode(), "validate": packed}
         mapped: list[str] = []
         if columns is not None:
             mapped = ["--columns", _options.file_of(columns, "columns", inside)]
@@ -224,17 +230,13 @@ def identify_long(
         end = float(table.read(table.rows - 1, table.rows)[time][0])
         planning = ["long", "plan", place, *of_head, *mapped, *arguments]
         planning += [f"--rows={table.rows}", f"--end={end!r}"]
+        memory += judges
         plan, _, _ = _options.answered(planning, progress, memory)
         inputs["plan"] = json.dumps(plan).encode()
-        judged, judges = _logs.given(validate=validate)
-        # workers run elsewhere
-        is_named = {"--validate", *(one[2] for one in judges)}
-        judged = [one if one in is_named else str(Path(one).resolve()) for one in judged]
-        inputs["validate"], names = _packed(judges)
         given = {
             "log": str(table.path),
             "stamp": list(_stamp(table.path)),
-            "arguments": [*arguments, *judged],
+            "arguments": arguments,
             "judges": names,
         }
         study = studies.Study("long", condensed, plan["pieces"], inputs=inputs, options=given)
@@ -242,10 +244,10 @@ def identify_long(
         with open(inside / "rows.jsonl", "w", encoding="utf-8") as file:
             for row in _computed(study, runner, part, progress):
                 file.write(row["rows"] + "\n")
-        estimating = ["long", "estimate", place, *of_head, *judged, *mapped, *arguments]
+        estimating = ["long", "estimate", place, *of_head, *mapped, *arguments]
         estimating += ["--plan", str(inside / "plan.json"), "--rows", str(inside / "rows.jsonl")]
         out = inside / "updated.json"
-        found, refused = answered_with_model(estimating, out, progress, [*memory, *judges])
+        found, refused = answered_with_model(estimating, out, progress, memory)
         updated = None if refused else updated_model(out, robot)
     return answer(Identification, found, updated=updated, update_refused=refused)
 

@@ -45,6 +45,11 @@ impl Format {
     }
 }
 
+/// Whether a file that begins so is text, and none of the other formats that are known.
+pub fn is_text(first: &[u8]) -> bool {
+    Format::of(&first[..first.len().min(MAGIC)]) == Format::Text
+}
+
 /// Opens a log of any format. `file` is the one that stands at `path`, if it is open already.
 ///
 /// # Errors

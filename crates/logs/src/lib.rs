@@ -1,6 +1,7 @@
 //! Files of logs as tables: named columns of numbers on one clock. Robots are unknown here.
 //!
 //! - [`open`]: a log of any format: CSV, MCAP, Parquet, Arrow, a folder of a ROS 2 bag
+//! - [`is_text`]: whether a file is text, by its first bytes
 //! - [`open_csv`]: text alone, from any source
 //! - [`MemoryLog`]: columns that a program has
 //! - [`Log`]: what a log says of itself and which columns it has; [`Log::read`] reads some,
@@ -33,7 +34,7 @@ mod table;
 pub use csv::open_csv;
 pub use error::{Error, ErrorKind};
 pub use fault::FileFault;
-pub use format::open;
+pub use format::{is_text, open};
 #[cfg(feature = "mcap")]
 pub use mcap::{Rows as McapRows, write_mcap};
 pub use memory::MemoryLog;

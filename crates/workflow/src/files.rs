@@ -1,12 +1,13 @@
 //! Files in: models by path or by name, and what other files refer to.
 
 use crate::error::{Cause, Error};
+use crate::known_columns::known_columns;
 use crate::mistaken::{FileKind, Mistaken};
 use crate::robot_file::{RobotFile, WholeRobot};
 use denavit_codegen::effect::{self, Effect};
 use denavit_codegen::model::equations::{self, Equations};
 use denavit_import::{self as import, Beside};
-use denavit_measure::log::ColumnMapping;
+use denavit_measure::log::{ColumnMapping, of_file};
 use denavit_plants::shipped::{self, ShippedModel};
 use denavit_simulate::LogFile;
 use std::fs::File;
@@ -178,12 +179,15 @@ impl Files {
         files.iter().map(read).collect()
     }
 
-    /// A log of the project's own columns.
+    /// A log of the project's own columns, of any format.
     ///
     /// # Errors
     /// All that is wrong with it, or why it is not read.
     pub fn log(&self, path: &Path) -> Result<LogFile, Error> {
         let name = path.display().to_string();
+        if path.is_dir() {
+            return self.table(path, name);
+        }
         let mut bytes = Vec::new();
         let file = self.open(path);
         let read = file.and_then(|file| file.take(MAX_LOG_BYTES + 1).read_to_end(&mut bytes));
@@ -191,7 +195,25 @@ impl Files {
         if bytes.len() as u64 > MAX_LOG_BYTES {
             return Err(Cause::TooLarge { file: name, limit: MAX_LOG_BYTES }.into());
         }
-        Ok(LogFile::from_csv(&name, &bytes).map_err(Cause::Log)?)
+        match denavit_logs::is_text(&bytes) {
+            true => Ok(LogFile::from_csv(&name, &bytes).map_err(Cause::Log)?),
+            false => self.table(path, name),
+        }
+    }
+
+    /// A log of messages, or of columns that are no text: those that the project has names for.
+    fn table(&self, path: &Path, name: String) -> Result<LogFile, Error> {
+        let file = self.open(path).map_err(|error| Error::read(path, error))?;
+        let log = known_columns(path, file);
+        let log = log.map_err(|faults| Cause::Logs(vec![of_file(&name, faults)]))?;
+        Ok(LogFile::of(&name, log))
+    }
+
+    /// A log of another format as the text that it would be.
+    fn as_text(&self, path: &Path) -> Result<Vec<u8>, String> {
+        let file = self.open(path).map_err(|error| reason(&error))?;
+        let log = known_columns(path, file).map_err(|error| error.to_string())?;
+        Ok(log.to_csv().into_bytes())
     }
 
     /// Which columns of logs are ours, as a file says.
@@ -384,6 +406,9 @@ impl Files {
         }
         let directory = file.parent().unwrap_or(Path::new(""));
         let place = directory.join(model);
+        if place.is_dir() {
+            return self.as_text(&place);
+        }
         let mut bytes = Vec::new();
         let opened = self.open(&place);
         let read = opened.and_then(|file| file.take(MAX_LOG_BYTES + 1).read_to_end(&mut bytes));
@@ -397,6 +422,9 @@ impl Files {
                 None => reason(&error),
             }
         })?;
+        if !denavit_logs::is_text(&bytes) {
+            return self.as_text(&place);
+        }
         if !import::is_description(&bytes) {
             return Ok(bytes);
         }

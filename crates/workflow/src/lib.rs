@@ -25,6 +25,7 @@ mod excite;
 mod faults;
 mod files;
 mod identify;
+mod known_columns;
 mod logs;
 mod mistaken;
 mod observer;

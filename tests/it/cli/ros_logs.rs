@@ -43,6 +43,45 @@ fn bag(directory: &Directory, file: &str) {
     fs::write(folder.join("metadata.yaml"), metadata).expect("written");
 }
 
+/// What judges a walk, and what a reference follows, may be messages: the same answers as of CSV.
+#[test]
+fn walks_and_references_do_not_depend_on_the_format_of_the_log() {
+    let directory = with_arm("walked");
+    for file in ["gait.csv", "gait.mcap"] {
+        done(&directory, &format!("simulate planar_biped_limit_cycle_gait -o {file}"));
+    }
+    bag(&directory, "gait.mcap");
+    let judged = |log: &str| {
+        let said = done(&directory, &format!("walk zmp {log} --model planar_biped"));
+        said.replace(log, "LOG")
+    };
+    let expected = judged("gait.csv");
+    assert!(expected.contains("least margin"), "{expected}");
+    assert_eq!(judged("gait.mcap"), expected);
+    assert_eq!(judged("bag"), expected);
+
+    let text = |log: &str| {
+        format!(
+            r#"{{"format": "denavit-scenario/1", "model": "planar_biped", "duration_s": 0.2,
+ "initial": {{"on_ground": true}}, "control": {{"joints": {{"left_knee": {{"kp": 500, "kd": 10,
+   "reference": {{"log": {{"file": "{log}", "column": "q_left_knee"}}}}}}}}}}}}"#
+        )
+    };
+    let mut runs = Vec::new();
+    for log in ["gait.csv", "gait.mcap", "bag"] {
+        fs::write(directory.path.join("follow.json"), text(log)).expect("written");
+        done(&directory, "simulate follow.json -o run.csv");
+        runs.push(fs::read_to_string(directory.path.join("run.csv")).expect("a run"));
+    }
+    assert_eq!(runs[0], runs[1]);
+    assert_eq!(runs[0], runs[2]);
+    fs::write(directory.path.join("cut.mcap"), b"\x89MCAP0\r\n").expect("written");
+    fs::write(directory.path.join("follow.json"), text("cut.mcap")).expect("written");
+    let refused = run(&directory, "simulate follow.json");
+    assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+    assert!(refused.stderr.contains("cut.mcap"), "{}", refused.stderr);
+}
+
 #[test]
 fn parameters_do_not_depend_on_the_format_of_the_log() {
     let directory = with_arm("formats");

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -42,6 +44,31 @@ def given(**options: Any) -> tuple[list[str], list[Columns]]:
                 arguments.append(name)
                 memory.append((option, at, name, [], named))
     return arguments, memory
+
+
+def for_workers(**options: Any) -> tuple[list[str], list[Columns]]:
+    """The same for processes that run elsewhere: paths of files are whole."""
+    arguments, memory = given(**options)
+    named = {f"--{option}" for option in options} | {one[2] for one in memory}
+    return [one if one in named else str(Path(one).resolve()) for one in arguments], memory
+
+
+def packed(memory: list[Columns]) -> tuple[bytes, list[list[Any]]]:
+    """Logs in memory as bytes, and what each is, with the names of its columns."""
+    file = io.BytesIO()
+    np.savez(file, *(values for one in memory for _, values in one[4]))
+    names = [[option, at, log, [name for name, _ in named]] for option, at, log, _, named in memory]
+    return file.getvalue(), names
+
+
+def unpacked(content: bytes, names: list[list[Any]]) -> list[Columns]:
+    """Logs as they were packed."""
+    with np.load(io.BytesIO(content)) as file:
+        values = iter([file[f"arr_{at}"] for at in range(len(file.files))])
+    found: list[Columns] = []
+    for option, at, log, named in names:
+        found.append((option, at, log, [], [(name, next(values)) for name in named]))
+    return found
 
 
 def _columns(log: Any) -> Iterator[tuple[str, Any]] | None:

@@ -10,7 +10,6 @@ rows, anywhere and in any order, and these are added. Needs pyarrow; ``runner`` 
 
 from __future__ import annotations
 
-import io
 import json
 import tempfile
 from collections.abc import Iterator
@@ -126,8 +125,8 @@ def _model(text: bytes) -> Model:
 
 @studies.rows(rows=str)
 def condensed(case: studies.Case) -> studies.Row:
-    """The rows of a piece of a long log. Inputs: ``model`` and ``plan``, and ``validate``, columns of
-    logs for validation. Options: ``log``, the path of a Parquet file that every worker can read,
+    """The rows of a piece of a long log. Inputs: ``model`` and ``plan``, and ``validate``, columns
+    of logs for validation. Options: ``log``, the path of a Parquet file that every worker can read,
     ``arguments`` of the command, and ``judges``, which of them ``validate`` has."""
     plan = json.loads(case.inputs["plan"])
     table = _table(Path(case.options["log"]))
@@ -140,7 +139,7 @@ def condensed(case: studies.Case) -> studies.Row:
         model = _options.file_of(_model(case.inputs["model"]), "model", inside)
         for name in case.inputs.keys() & {"plan", "columns"}:
             (inside / f"{name}.json").write_bytes(case.inputs[name])
-        judges = _unpacked(case.inputs["validate"], case.options["judges"])
+        judges = _logs.unpacked(case.inputs["validate"], case.options["judges"])
         for stretch in range(first, end):
             start, stop = plan["rows_of_stretches"][stretch]
             given, memory = _given(table, start, stop)
@@ -153,23 +152,6 @@ def condensed(case: studies.Case) -> studies.Row:
                 arguments += ["--onto", str(inside / "rows.jsonl")]
             text = json.dumps(_options.answered(arguments, None, [*memory, *judges])[0])
     return {"rows": text}
-
-
-def _packed(memory: list[Columns]) -> tuple[bytes, list[list[Any]]]:
-    """Logs in memory as bytes, and where each stands with the names of its columns."""
-    file = io.BytesIO()
-    columns = [values for one in memory for _, values in one[4]]
-    np.savez(file, *columns)
-    return file.getvalue(), [[at, log, [name for name, _ in named]]
-                             for _, at, log, _, named in memory]  # fmt: skip
-
-
-def _unpacked(packed: bytes, names: list[list[Any]]) -> list[Columns]:
-    """Logs for validation as they were packed."""
-    with np.load(io.BytesIO(packed)) as file:
-        values = iter([file[f"arr_{at}"] for at in range(len(file.files))])
-    return [("validate", at, log, [], [(name, next(values)) for name in named])
-            for at, log, named in names]  # fmt: skip
 
 
 def _given(table: _Table, start: int, end: int) -> tuple[list[str], list[Columns]]:
@@ -196,9 +178,8 @@ def identify_long(
 
     ``head`` is how many of its rows are identified as any log is, fewer than all; ``time`` the
     column of its times, which ``columns`` maps to ``t`` if it has another name. What the file says
-    of itself (``torque_side``, ``model``) counts as in any log. ``validate`` are logs that judge the
-    answer, which are held as a whole; one that is a part of ``log`` is told, and the answer is no
-    good one then.
+    of itself (``torque_side``, ``model``) counts as in any log. ``validate`` are logs that judge
+    the answer; one that is a part of ``log`` is told, and the answer is no good one then.
     ``runner`` computes the pieces (:func:`denavit.studies.on_ray.on_ray` on many machines, each of
     which reads the file by the same path); ``part`` is where rows of pieces are kept, so that a run
     that was broken off goes on. ``options`` are those of :func:`denavit.identify`: ``method``
@@ -215,11 +196,8 @@ def identify_long(
     with _options.folder() as inside:
         effects, place = as_place(robot, inside)
         arguments = [*effects, *_arguments(options, head)]
-        judged, judges = _logs.given(validate=validate)
-        # workers run elsewhere
-        is_named = {"--validate", *(one[2] for one in judges)}
-        judged = [one if one in is_named else str(Path(one).resolve()) for one in judged]
-        packed, names = _packed(judges)
+        judged, judges = _logs.for_workers(validate=validate)
+        packed, names = _logs.packed(judges)
         arguments += judged
         inputs = {"model": robot.source.encode(), "validate": packed}
         mapped: list[str] = []
@@ -228,10 +206,10 @@ def identify_long(
             inputs["columns"] = Path(mapped[1]).read_bytes()
         of_head, memory = _given(table, 0, min(head, table.rows))
         end = float(table.read(table.rows - 1, table.rows)[time][0])
-        planning = ["long", "plan", place, *of_head, *mapped, *arguments]
-        planning += [f"--rows={table.rows}", f"--end={end!r}"]
+        planned = [place, *of_head, *mapped, *arguments]
+        of_whole = [f"--rows={table.rows}", f"--end={end!r}"]
         memory += judges
-        plan, _, _ = _options.answered(planning, progress, memory)
+        plan, _, _ = _options.answered(["long", "plan", *planned, *of_whole], progress, memory)
         inputs["plan"] = json.dumps(plan).encode()
         given = {
             "log": str(table.path),
@@ -244,8 +222,8 @@ def identify_long(
         with open(inside / "rows.jsonl", "w", encoding="utf-8") as file:
             for row in _computed(study, runner, part, progress):
                 file.write(row["rows"] + "\n")
-        estimating = ["long", "estimate", place, *of_head, *mapped, *arguments]
-        estimating += ["--plan", str(inside / "plan.json"), "--rows", str(inside / "rows.jsonl")]
+        estimating = ["long", "estimate", *planned, "--plan", str(inside / "plan.json")]
+        estimating += ["--rows", str(inside / "rows.jsonl")]
         out = inside / "updated.json"
         found, refused = answered_with_model(estimating, out, progress, memory)
         updated = None if refused else updated_model(out, robot)

@@ -262,8 +262,8 @@ impl<'a, 'r, 'w, 'o> Reader<'a, 'r, 'w, 'o> {
         }
     }
 
-    /// A log for validation, conditioned as the stretches of a long log are; none if it is too short
-    /// for that.
+    /// A log for validation, conditioned as the stretches of a long log are; none if it is too
+    /// short for that.
     pub(super) fn as_stretch(
         &mut self,
         source: &LogSource,

@@ -86,7 +86,8 @@ def folder() -> Iterator[Path]:
         try:
             yield Path(path)
         except Error as error:
-            raise error._without(path + os.sep) from None
+            named = error._with("", path + os.sep)
+            raise named._with("the folder of the text", path) from None
 
 
 def file_of(value: object, what: str, inside: Path) -> str:

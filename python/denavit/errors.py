@@ -37,15 +37,15 @@ class Error(Exception):
         super().__init__("\n".join(str(fault) for fault in faults))
         self.faults = tuple(faults)
 
-    def _without(self, folder: str) -> Error:
-        """The same, where files of a folder have their names alone."""
+    def _with(self, name: str, folder: str) -> Error:
+        """The same, where a folder is called otherwise."""
 
-        def bare(text: str | None) -> str | None:
-            return None if text is None else text.replace(folder, "")
+        def bare(text: str) -> str:
+            return text.replace(folder, name)
 
         def renamed(fault: Fault) -> Fault:
-            cause = fault.cause.replace(folder, "")
-            return replace(fault, file=bare(fault.file), cause=cause, hint=bare(fault.hint))
+            file, hint = (text and bare(text) for text in (fault.file, fault.hint))
+            return replace(fault, file=file, cause=bare(fault.cause), hint=hint)
 
         return type(self)([renamed(fault) for fault in self.faults])
 

@@ -214,7 +214,7 @@ def fetched(root: str, train: Sequence[str], validate: Sequence[str]) -> Iterato
         except Error as error:
             # faults name logs as the fleet does
             for folder in folders:
-                error = error._without(folder)
+                error = error._with("", folder)
             raise error from None
 
 

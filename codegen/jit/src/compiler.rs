@@ -58,11 +58,7 @@ pub(crate) fn compile(
     if std::mem::size_of::<usize>() != 8 {
         return Err(Unsupported::because("its addresses have no 64 bits"));
     }
-    for leaf in routine.code.leaves.values() {
-        if let Leaf::Argument { argument, entry } = *leaf {
-            assert!(entry < routine.arguments[argument].len, "an entry beyond its argument");
-        }
-    }
+    check_entries(routine);
     let is_large = routine.code.instructions.len() >= LARGE;
     let mut module = module(if is_large { "single_pass" } else { "backtracking" })?;
     let mut context = module.make_context();
@@ -84,6 +80,18 @@ pub(crate) fn compile(
     module.define_function(id, &mut context).map_err(Unsupported::because)?;
     module.finalize_definitions().map_err(Unsupported::because)?;
     Ok(Machine::new(module, id))
+}
+
+/// Sees that leaves are entries of their arguments.
+///
+/// # Panics
+/// If one is beyond.
+pub(crate) fn check_entries(routine: &Routine) {
+    for leaf in routine.code.leaves.values() {
+        if let Leaf::Argument { argument, entry } = *leaf {
+            assert!(entry < routine.arguments[argument].len, "an entry beyond its argument");
+        }
+    }
 }
 
 /// The generator, with an algorithm that assigns registers.

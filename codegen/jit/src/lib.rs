@@ -27,10 +27,15 @@
 mod batch;
 mod compiler;
 mod external;
+mod lanes;
 mod machine;
+mod pairs;
 mod single;
 mod translate;
+#[cfg(target_arch = "x86_64")]
+mod wide;
 
 pub use batch::CompiledBatch;
 pub use compiler::{Unsupported, is_supported};
+pub use lanes::Lanes;
 pub use single::Compiled;

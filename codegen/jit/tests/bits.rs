@@ -6,9 +6,10 @@ use denavit_codegen::expr::{BinaryFunction, Dag, ExprId, Relation, SymbolClass, 
 use denavit_codegen::function::{Argument, Form, Function, FunctionName, Output};
 use denavit_codegen::number::Residue;
 use denavit_codegen::program::{
-    Evaluate, EvaluateBatch, Evaluator, Program, fuse, lower, parameter_defaults, prelude_values,
+    Evaluate, EvaluateBatch, Evaluator, Program, Routine, fuse, lower, parameter_defaults,
+    prelude_values,
 };
-use denavit_jit::{Compiled, CompiledBatch};
+use denavit_jit::{Compiled, CompiledBatch, Lanes};
 
 /// A number in [-2, 2), from a written seed.
 fn number(seed: usize, key: usize) -> f64 {
@@ -51,17 +52,42 @@ fn compare(program: &Program, prelude: &[f64], value: impl Fn(usize, usize) -> f
             assert!(same(&found, &expected), "{name}: {found:?} {expected:?}");
             rows.push(expected);
         }
-        // Both an even number of samples and an odd one.
-        for samples in [SAMPLES, SAMPLES - 1, 1, 0] {
-            let mut batch = CompiledBatch::new(routine, prelude).unwrap();
-            let given: Vec<&[f64]> = inputs.iter().map(|column| &column[..samples]).collect();
-            let mut outputs = vec![vec![f64::NAN; samples]; EvaluateBatch::outputs(&batch)];
-            let mut columns: Vec<&mut [f64]> = outputs.iter_mut().map(|c| &mut c[..]).collect();
-            batch.evaluate(&given, &mut columns).unwrap();
-            for (sample, expected) in rows[..samples].iter().enumerate() {
-                let found: Vec<f64> = outputs.iter().map(|column| column[sample]).collect();
-                assert!(same(&found, expected), "{name}, sample {sample} of {samples}");
-            }
+        for lanes in lanes() {
+            compare_batch(routine, prelude, lanes, &inputs, &rows);
+        }
+    }
+}
+
+/// All numbers of lanes that this processor has.
+fn lanes() -> Vec<Lanes> {
+    let (there, missing): (Vec<Lanes>, Vec<Lanes>) =
+        Lanes::ALL.into_iter().partition(|lanes| lanes.is_available());
+    if !missing.is_empty() {
+        eprintln!("not tested, as this processor does not have them: {missing:?}");
+    }
+    there
+}
+
+/// A batch of every number of samples up to 17, and of all; `rows` has the results of each sample.
+fn compare_batch(
+    routine: &Routine,
+    prelude: &[f64],
+    lanes: Lanes,
+    inputs: &[Vec<f64>],
+    rows: &[Vec<f64>],
+) {
+    let mut batch = CompiledBatch::with_lanes(routine, prelude, lanes).unwrap();
+    assert_eq!(batch.lanes(), lanes);
+    for samples in (0..18).chain([rows.len()]) {
+        let given: Vec<&[f64]> = inputs.iter().map(|column| &column[..samples]).collect();
+        let mut outputs = vec![vec![f64::NAN; samples]; EvaluateBatch::outputs(&batch)];
+        let mut columns: Vec<&mut [f64]> = outputs.iter_mut().map(|c| &mut c[..]).collect();
+        batch.evaluate(&given, &mut columns).unwrap();
+        for (sample, expected) in rows[..samples].iter().enumerate() {
+            let found: Vec<f64> = outputs.iter().map(|column| column[sample]).collect();
+            let name = routine.full_name();
+            let place = format!("{name}, {lanes:?}, sample {sample} of {samples}");
+            assert!(same(&found, expected), "{place}: {found:?} {expected:?}");
         }
     }
 }

@@ -38,6 +38,7 @@
 #[cfg(feature = "fma")]
 extern crate std;
 
+pub mod numbers;
 #[cfg(feature = "wide")]
 mod pack;
 mod reduction;

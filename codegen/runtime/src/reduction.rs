@@ -46,11 +46,11 @@ impl Lanes for f64 {
 }
 
 /// Up to here the three parts of pi/2 suffice: the number of quarter turns stays below 2^16.
-pub(crate) const ORDINARY_RANGE: f64 = 1e5;
+pub const ORDINARY_RANGE: f64 = 1e5;
 
 /// pi/2 in three parts. The first two have at most 37 bits, so that their products with a number
 /// of quarter turns below 2^16 are exact; together the three differ from pi/2 by 2^-130.
-const HALF_PI: [f64; 3] = [
+pub const HALF_PI: [f64; 3] = [
     f64::from_bits(0x3ff9_21fb_5444_0000),
     f64::from_bits(0x3d86_8c23_4c4c_0000),
     f64::from_bits(0x3b29_8a2e_0370_7345),
@@ -58,7 +58,7 @@ const HALF_PI: [f64; 3] = [
 
 /// Adding and subtracting 1.5 * 2^52 rounds to the nearest integer, ties to even, and leaves that
 /// integer, modulo 2^51, in the low bits in between.
-const ROUNDER: f64 = 6_755_399_441_055_744.0;
+pub const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 /// Reduces any `f64`; infinities and NaN give NaN.
 #[inline]

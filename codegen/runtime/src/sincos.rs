@@ -4,7 +4,7 @@ use crate::reduction::{self, Lanes, Reduced};
 
 /// Coefficients of r^3, r^5, .. r^13 in r - sin r. Minimax on |r| <= pi/4, weighted for relative
 /// error of the sine, and refitted after each coefficient was rounded to `f64`: error 2^-57.9.
-const SINE: [f64; 6] = [
+pub const SINE: [f64; 6] = [
     0.1666666666666663,
     -0.00833333333332184,
     0.00019841269829358528,
@@ -14,7 +14,7 @@ const SINE: [f64; 6] = [
 ];
 
 /// Coefficients of r^4, r^6, .. r^14 in cos r, found in the same way: error 2^-63.9.
-const COSINE: [f64; 6] = [
+pub const COSINE: [f64; 6] = [
     0.041666666666666595,
     -0.0013888888888873342,
     2.480158728900208e-5,

@@ -1,0 +1,444 @@
+//! Instructions of the processor.
+//!
+//! A function has these parameters, by the convention of System V, and returns the bytes of each
+//! column that are done: fewer than asked for where a block has an angle that is not ordinary.
+//!
+//! | parameter | while it runs | |
+//! |---|---|---|
+//! | `rdi` | `r12` | addresses of the columns of the arguments |
+//! | `rsi` | `r13` | constants |
+//! | `rdx` | `r14` | addresses of the columns of the results |
+//! | `rcx` | `r15` | scratch memory |
+//! | `r8` | `rbx` | bytes of each column before the first block |
+//! | `r9` | `rbp` | bytes of each column before the end |
+
+use super::calls::Callee;
+use super::steps::{Comparison, Operation};
+use crate::lanes::Lanes;
+use iced_x86::{Code, Encoder, IcedError, Instruction, MemoryOperand, Register};
+
+/// Where an operand is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// A vector register.
+    Register(u8),
+    /// A row of the table of constants.
+    Table(u32),
+    /// The block in a column of the arguments.
+    Column(u32),
+    /// A slot of the scratch memory.
+    Scratch(u32),
+}
+
+/// Which operand of a fused product is overwritten, and which may be in memory.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Form {
+    /// to = to last + middle
+    F132,
+    /// to = middle to + last
+    F213,
+    /// to = middle last + to
+    F231,
+}
+
+/// The mask of single comparisons.
+const HOLDS: Register = Register::K1;
+/// The mask of ordinary angles.
+const ORDINARY: Register = Register::K7;
+/// Callee-saved registers, in the order in which they are saved.
+const SAVED: [Register; 6] =
+    [Register::RBX, Register::RBP, Register::R12, Register::R13, Register::R14, Register::R15];
+
+/// Slots of the scratch memory that calls have: the operands, and what is watched.
+pub(super) const OPERANDS: [u32; 2] = [0, 1];
+const WATCHED: u32 = 2;
+/// The first slot for values.
+pub(super) const FIRST_SLOT: u32 = 3;
+
+/// Writes instructions, one after the other.
+pub(super) struct Assembler {
+    encoder: Encoder,
+    lanes: Lanes,
+    bytes: u64,
+}
+
+/// A function that is being written.
+pub(super) struct Loop {
+    head: u64,
+    /// Where jumps to the end are, behind them.
+    exits: Vec<u64>,
+    watches: bool,
+}
+
+impl Assembler {
+    pub(super) fn new(lanes: Lanes) -> Self {
+        Self { encoder: Encoder::new(64), lanes, bytes: 0 }
+    }
+
+    /// Bytes that are written.
+    pub(super) fn position(&self) -> usize {
+        usize::try_from(self.bytes).expect("code is in memory")
+    }
+
+    pub(super) fn finish(mut self) -> Vec<u8> {
+        self.encoder.take_buffer()
+    }
+
+    fn is_eight(&self) -> bool {
+        self.lanes == Lanes::Eight
+    }
+
+    /// Vector registers.
+    pub(super) fn registers(&self) -> u8 {
+        if self.is_eight() { 32 } else { 16 }
+    }
+
+    fn width(&self) -> i64 {
+        if self.is_eight() { 64 } else { 32 }
+    }
+
+    fn write(&mut self, instruction: Result<Instruction, IcedError>) {
+        let instruction = instruction.expect("operands fit the instruction");
+        let written = self.encoder.encode(&instruction, self.bytes);
+        self.bytes += written.expect("the processor has the instruction") as u64;
+    }
+
+    fn vector(&self, register: u8) -> Register {
+        let first = if self.is_eight() { Register::ZMM0 } else { Register::YMM0 };
+        first + u32::from(register)
+    }
+
+    /// The operand of a place that is no register.
+    fn memory(&mut self, place: Place) -> MemoryOperand {
+        match place {
+            Place::Register(_) => unreachable!("a register is no memory"),
+            Place::Table(row) => {
+                let size = if self.is_eight() { 8 } else { 32 };
+                let mut operand = based(Register::R13, size * i64::from(row));
+                operand.is_broadcast = self.is_eight();
+                operand
+            }
+            Place::Column(column) => self.column(Register::R12, column),
+            Place::Scratch(slot) => based(Register::R15, self.width() * i64::from(slot)),
+        }
+    }
+
+    fn column(&mut self, columns: Register, column: u32) -> MemoryOperand {
+        let address = based(columns, 8 * i64::from(column));
+        self.write(Instruction::with2(Code::Mov_r64_rm64, Register::RAX, address));
+        MemoryOperand::with_base_index(Register::RAX, Register::RBX)
+    }
+
+    /// An instruction of two operands and its result; with an immediate number where it has one.
+    fn three(&mut self, code: Code, to: Register, a: u8, b: Place, number: Option<u32>) {
+        self.masked(code, to, a, b, number, Register::None);
+    }
+
+    fn masked(
+        &mut self,
+        code: Code,
+        to: Register,
+        a: u8,
+        b: Place,
+        number: Option<u32>,
+        mask: Register,
+    ) {
+        let a = self.vector(a);
+        let instruction = match (b, number) {
+            (Place::Register(b), None) => Instruction::with3(code, to, a, self.vector(b)),
+            (Place::Register(b), Some(n)) => Instruction::with4(code, to, a, self.vector(b), n),
+            (b, None) => Instruction::with3(code, to, a, self.memory(b)),
+            (b, Some(n)) => Instruction::with4(code, to, a, self.memory(b), n),
+        };
+        let masked = instruction.map(|mut instruction| {
+            instruction.set_op_mask(mask);
+            instruction
+        });
+        self.write(masked);
+    }
+
+    /// to = place
+    pub(super) fn load(&mut self, to: u8, place: Place) {
+        let to = self.vector(to);
+        let instruction = match (place, self.is_eight()) {
+            (Place::Register(from), true) => {
+                Instruction::with2(Code::EVEX_Vmovapd_zmm_k1z_zmmm512, to, self.vector(from))
+            }
+            (Place::Register(from), false) => {
+                Instruction::with2(Code::VEX_Vmovapd_ymm_ymmm256, to, self.vector(from))
+            }
+            (Place::Table(_), true) => {
+                let mut memory = self.memory(place);
+                memory.is_broadcast = false;
+                Instruction::with2(Code::EVEX_Vbroadcastsd_zmm_k1z_xmmm64, to, memory)
+            }
+            (_, true) => {
+                Instruction::with2(Code::EVEX_Vmovupd_zmm_k1z_zmmm512, to, self.memory(place))
+            }
+            (_, false) => Instruction::with2(Code::VEX_Vmovupd_ymm_ymmm256, to, self.memory(place)),
+        };
+        self.write(instruction);
+    }
+
+    fn store(&mut self, from: u8, memory: MemoryOperand) {
+        let code = match self.is_eight() {
+            true => Code::EVEX_Vmovupd_zmmm512_k1z_zmm,
+            false => Code::VEX_Vmovupd_ymmm256_ymm,
+        };
+        self.write(Instruction::with2(code, memory, self.vector(from)));
+    }
+
+    /// Keeps a register in the scratch memory.
+    pub(super) fn keep(&mut self, from: u8, slot: u32) {
+        let memory = self.memory(Place::Scratch(slot));
+        self.store(from, memory);
+    }
+
+    /// Writes a register to a column of the results.
+    pub(super) fn store_column(&mut self, from: u8, column: u32) {
+        let memory = self.column(Register::R14, column);
+        self.store(from, memory);
+    }
+
+    /// to = a operation b
+    pub(super) fn binary(&mut self, operation: Operation, to: u8, a: u8, b: Place) {
+        let code = match (operation, self.is_eight()) {
+            (Operation::Add, true) => Code::EVEX_Vaddpd_zmm_k1z_zmm_zmmm512b64_er,
+            (Operation::Sub, true) => Code::EVEX_Vsubpd_zmm_k1z_zmm_zmmm512b64_er,
+            (Operation::Mul, true) => Code::EVEX_Vmulpd_zmm_k1z_zmm_zmmm512b64_er,
+            (Operation::Div, true) => Code::EVEX_Vdivpd_zmm_k1z_zmm_zmmm512b64_er,
+            (Operation::And, true) => Code::EVEX_Vpandq_zmm_k1z_zmm_zmmm512b64,
+            (Operation::Xor, true) => Code::EVEX_Vpxorq_zmm_k1z_zmm_zmmm512b64,
+            (Operation::AddBits, true) => Code::EVEX_Vpaddq_zmm_k1z_zmm_zmmm512b64,
+            (Operation::Add, false) => Code::VEX_Vaddpd_ymm_ymm_ymmm256,
+            (Operation::Sub, false) => Code::VEX_Vsubpd_ymm_ymm_ymmm256,
+            (Operation::Mul, false) => Code::VEX_Vmulpd_ymm_ymm_ymmm256,
+            (Operation::Div, false) => Code::VEX_Vdivpd_ymm_ymm_ymmm256,
+            (Operation::And, false) => Code::VEX_Vandpd_ymm_ymm_ymmm256,
+            (Operation::Xor, false) => Code::VEX_Vxorpd_ymm_ymm_ymmm256,
+            (Operation::AddBits, false) => Code::VEX_Vpaddq_ymm_ymm_ymmm256,
+            _ => unreachable!("no operation of two values"),
+        };
+        self.three(code, self.vector(to), a, b, None);
+    }
+
+    pub(super) fn square_root(&mut self, to: u8, a: Place) {
+        let code = match self.is_eight() {
+            true => Code::EVEX_Vsqrtpd_zmm_k1z_zmmm512b64_er,
+            false => Code::VEX_Vsqrtpd_ymm_ymmm256,
+        };
+        let to = self.vector(to);
+        let instruction = match a {
+            Place::Register(a) => Instruction::with2(code, to, self.vector(a)),
+            a => Instruction::with2(code, to, self.memory(a)),
+        };
+        self.write(instruction);
+    }
+
+    pub(super) fn shift_left(&mut self, to: u8, a: u8, bits: u8) {
+        let code = match self.is_eight() {
+            true => Code::EVEX_Vpsllq_zmm_k1z_zmmm512b64_imm8,
+            false => Code::VEX_Vpsllq_ymm_ymm_imm8,
+        };
+        let (to, a) = (self.vector(to), self.vector(a));
+        self.write(Instruction::with3(code, to, a, u32::from(bits)));
+    }
+
+    /// A product fused with a sum.
+    pub(super) fn fused(
+        &mut self,
+        operation: Operation,
+        form: Form,
+        to: u8,
+        middle: u8,
+        last: Place,
+    ) {
+        use Form::{F132, F213, F231};
+        use Operation::{MulAdd, MulSub, NegMulAdd};
+        let code = match (operation, form, self.is_eight()) {
+            (MulAdd, F132, true) => Code::EVEX_Vfmadd132pd_zmm_k1z_zmm_zmmm512b64_er,
+            (MulAdd, F213, true) => Code::EVEX_Vfmadd213pd_zmm_k1z_zmm_zmmm512b64_er,
+            (MulAdd, F231, true) => Code::EVEX_Vfmadd231pd_zmm_k1z_zmm_zmmm512b64_er,
+            (MulSub, F132, true) => Code::EVEX_Vfmsub132pd_zmm_k1z_zmm_zmmm512b64_er,
+            (MulSub, F213, true) => Code::EVEX_Vfmsub213pd_zmm_k1z_zmm_zmmm512b64_er,
+            (MulSub, F231, true) => Code::EVEX_Vfmsub231pd_zmm_k1z_zmm_zmmm512b64_er,
+            (NegMulAdd, F132, true) => Code::EVEX_Vfnmadd132pd_zmm_k1z_zmm_zmmm512b64_er,
+            (NegMulAdd, F213, true) => Code::EVEX_Vfnmadd213pd_zmm_k1z_zmm_zmmm512b64_er,
+            (NegMulAdd, F231, true) => Code::EVEX_Vfnmadd231pd_zmm_k1z_zmm_zmmm512b64_er,
+            (MulAdd, F132, false) => Code::VEX_Vfmadd132pd_ymm_ymm_ymmm256,
+            (MulAdd, F213, false) => Code::VEX_Vfmadd213pd_ymm_ymm_ymmm256,
+            (MulAdd, F231, false) => Code::VEX_Vfmadd231pd_ymm_ymm_ymmm256,
+            (MulSub, F132, false) => Code::VEX_Vfmsub132pd_ymm_ymm_ymmm256,
+            (MulSub, F213, false) => Code::VEX_Vfmsub213pd_ymm_ymm_ymmm256,
+            (MulSub, F231, false) => Code::VEX_Vfmsub231pd_ymm_ymm_ymmm256,
+            (NegMulAdd, F132, false) => Code::VEX_Vfnmadd132pd_ymm_ymm_ymmm256,
+            (NegMulAdd, F213, false) => Code::VEX_Vfnmadd213pd_ymm_ymm_ymmm256,
+            (NegMulAdd, F231, false) => Code::VEX_Vfnmadd231pd_ymm_ymm_ymmm256,
+            _ => unreachable!("no product and sum"),
+        };
+        self.three(code, self.vector(to), middle, last, None);
+    }
+
+    /// Of eight: to = to xor (a and b).
+    pub(super) fn xor_and(&mut self, to: u8, a: u8, b: Place) {
+        /// The results of all eight triples of bits.
+        const TRIPLES: u32 = 0x78;
+        let code = Code::EVEX_Vpternlogq_zmm_k1z_zmm_zmmm512b64_imm8;
+        self.three(code, self.vector(to), a, b, Some(TRIPLES));
+    }
+
+    /// Of four: all bits where a comparison holds.
+    pub(super) fn compare(&mut self, comparison: Comparison, to: u8, a: u8, b: Place) {
+        let code = Code::VEX_Vcmppd_ymm_ymm_ymmm256_imm8;
+        self.three(code, self.vector(to), a, b, Some(comparison as u32));
+    }
+
+    /// Of four: to = a where `mask` has its highest bit, else b.
+    pub(super) fn choose(&mut self, to: u8, mask: u8, a: Place, b: u8) {
+        let code = Code::VEX_Vblendvpd_ymm_ymm_ymmm256_ymm;
+        let (to, b, mask) = (self.vector(to), self.vector(b), self.vector(mask));
+        let instruction = match a {
+            Place::Register(a) => Instruction::with4(code, to, b, self.vector(a), mask),
+            a => Instruction::with4(code, to, b, self.memory(a), mask),
+        };
+        self.write(instruction);
+    }
+
+    /// Of eight: remembers where a comparison holds, for the next [`choose_by`](Self::choose_by).
+    pub(super) fn test_comparison(&mut self, comparison: Comparison, a: u8, b: Place) {
+        let code = Code::EVEX_Vcmppd_kr_k1_zmm_zmmm512b64_imm8_sae;
+        self.three(code, HOLDS, a, b, Some(comparison as u32));
+    }
+
+    /// Of eight: remembers in a mask where two values have a bit in common.
+    pub(super) fn test_bits(&mut self, mask: u8, a: u8, b: Place) {
+        let code = Code::EVEX_Vptestmq_kr_k1_zmm_zmmm512b64;
+        self.three(code, Register::K0 + u32::from(mask), a, b, None);
+    }
+
+    /// Of eight: to = a where the mask is set (where the comparison holds, without one), else b.
+    pub(super) fn choose_by(&mut self, mask: Option<u8>, to: u8, a: Place, b: u8) {
+        let mask = mask.map_or(HOLDS, |mask| Register::K0 + u32::from(mask));
+        let code = Code::EVEX_Vblendmpd_zmm_k1z_zmm_zmmm512b64;
+        self.masked(code, self.vector(to), b, a, None, mask);
+    }
+
+    /// Of eight: watches that a is not greater than b.
+    pub(super) fn watch_order(&mut self, a: u8, b: Place) {
+        let code = Code::EVEX_Vcmppd_kr_k1_zmm_zmmm512b64_imm8_sae;
+        self.masked(code, ORDINARY, a, b, Some(Comparison::NotGreater as u32), ORDINARY);
+    }
+
+    /// Of four: watches that a has no highest bit.
+    pub(super) fn watch_bit(&mut self, a: u8) {
+        let a = self.vector(a);
+        self.write(Instruction::with2(Code::VEX_Vmovmskpd_r32_ymm, Register::EAX, a));
+        self.write(Instruction::with2(Code::Or_r32_rm32, Register::R11D, Register::EAX));
+    }
+
+    /// Calls a function. No vector register keeps its value.
+    pub(super) fn call(&mut self, callee: Callee, results: [u32; 2], watches: bool) {
+        let watched = self.memory(Place::Scratch(WATCHED));
+        if watches {
+            self.write(match self.is_eight() {
+                true => Instruction::with2(Code::VEX_Kmovw_m16_kr, watched, ORDINARY),
+                false => Instruction::with2(Code::Mov_rm32_r32, watched, Register::R11D),
+            });
+        }
+        self.write(Ok(Instruction::with(Code::VEX_Vzeroupper)));
+        let slots = OPERANDS.into_iter().chain(results);
+        for (to, slot) in
+            [Register::RDI, Register::RSI, Register::RDX, Register::RCX].iter().zip(slots)
+        {
+            let memory = self.memory(Place::Scratch(slot));
+            self.write(Instruction::with2(Code::Lea_r64_m, *to, memory));
+        }
+        let address = callee.address(self.lanes);
+        self.write(Instruction::with2(Code::Mov_r64_imm64, Register::RAX, address));
+        self.write(Instruction::with1(Code::Call_rm64, Register::RAX));
+        if watches {
+            self.write(match self.is_eight() {
+                true => Instruction::with2(Code::VEX_Kmovw_kr_km16, ORDINARY, watched),
+                false => Instruction::with2(Code::Mov_r32_rm32, Register::R11D, watched),
+            });
+        }
+    }
+
+    /// Begins a function, and in it the loop over blocks.
+    pub(super) fn begin(&mut self, watches: bool) -> Loop {
+        for register in SAVED {
+            self.write(Instruction::with1(Code::Push_r64, register));
+        }
+        // The stack is aligned where calls are made.
+        self.write(Instruction::with2(Code::Sub_rm64_imm8, Register::RSP, 8));
+        let moved = [
+            (Register::R12, Register::RDI),
+            (Register::R13, Register::RSI),
+            (Register::R14, Register::RDX),
+            (Register::R15, Register::RCX),
+            (Register::RBX, Register::R8),
+            (Register::RBP, Register::R9),
+        ];
+        for (to, from) in moved {
+            self.write(Instruction::with2(Code::Mov_r64_rm64, to, from));
+        }
+        self.write(Instruction::with2(Code::Cmp_r64_rm64, Register::RBX, Register::RBP));
+        let mut blocks = Loop { head: 0, exits: Vec::new(), watches };
+        self.exit(Code::Je_rel32_64, &mut blocks);
+        blocks.head = self.bytes;
+        if watches {
+            let (mask, bits) = (ORDINARY, Register::R11D);
+            self.write(match self.is_eight() {
+                true => Instruction::with3(Code::VEX_Kxnorw_kr_kr_kr, mask, mask, mask),
+                false => Instruction::with2(Code::Xor_r32_rm32, bits, bits),
+            });
+        }
+        blocks
+    }
+
+    /// Jumps to the end.
+    fn exit(&mut self, code: Code, blocks: &mut Loop) {
+        self.write(Instruction::with_branch(code, self.bytes));
+        blocks.exits.push(self.bytes);
+    }
+
+    /// Ends the loop and the function.
+    pub(super) fn end(&mut self, mut blocks: Loop) {
+        if blocks.watches {
+            let bits = if self.is_eight() { Register::EAX } else { Register::R11D };
+            let ordinary = if self.is_eight() { 0xff } else { 0 };
+            if self.is_eight() {
+                self.write(Instruction::with2(Code::VEX_Kmovw_r32_kr, bits, ORDINARY));
+            }
+            self.write(Instruction::with2(Code::Cmp_rm32_imm32, bits, ordinary));
+            self.exit(Code::Jne_rel32_64, &mut blocks);
+        }
+        let width = i32::try_from(self.width()).expect("32 or 64");
+        self.write(Instruction::with2(Code::Add_rm64_imm8, Register::RBX, width));
+        self.write(Instruction::with2(Code::Cmp_r64_rm64, Register::RBX, Register::RBP));
+        self.write(Instruction::with_branch(Code::Jne_rel32_64, blocks.head));
+        self.land(&blocks.exits);
+        self.write(Instruction::with2(Code::Mov_r64_rm64, Register::RAX, Register::RBX));
+        self.write(Ok(Instruction::with(Code::VEX_Vzeroupper)));
+        self.write(Instruction::with2(Code::Add_rm64_imm8, Register::RSP, 8));
+        for register in SAVED.into_iter().rev() {
+            self.write(Instruction::with1(Code::Pop_r64, register));
+        }
+        self.write(Ok(Instruction::with(Code::Retnq)));
+    }
+
+    /// Jumps that end before these places come here: their last four bytes are the distance.
+    fn land(&mut self, exits: &[u64]) {
+        let mut code = self.encoder.take_buffer();
+        for &exit in exits {
+            let distance = i32::try_from(self.bytes - exit).expect("code is below 2^31 bytes");
+            let exit = usize::try_from(exit).expect("code is in memory");
+            code[exit - 4..exit].copy_from_slice(&distance.to_le_bytes());
+        }
+        self.encoder.set_buffer(code);
+    }
+}
+
+fn based(base: Register, displacement: i64) -> MemoryOperand {
+    MemoryOperand::with_base_displ(base, displacement)
+}

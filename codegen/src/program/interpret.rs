@@ -4,7 +4,7 @@
 //! bit for bit.
 
 use super::ShapeMismatch;
-use super::tape::{Register, Run, Tape};
+use super::tape::{Register, Run, SIDE_BY_SIDE, Tape};
 use super::{
     BinaryOperation, Code, FusedOperation, Leaf, Program, Routine, UnaryOperation, constant_values,
 };
@@ -108,9 +108,6 @@ pub(super) fn initial_registers<S: Scalar>(tape: &Tape, prelude: &[f64]) -> Vec<
     };
     tape.leaves.iter().map(leaf).collect()
 }
-
-/// Sines and cosines that are computed at a time.
-const SIDE_BY_SIDE: usize = 4;
 
 fn execute<S: Transcendental>(tape: &Tape, values: &mut [S]) {
     use BinaryOperation::{Add, Mul, Sub};

@@ -10,6 +10,9 @@ use crate::arena::Handle;
 use crate::expr::Relation;
 use std::ops::Range;
 
+/// Sines and cosines that are computed at a time.
+pub(super) const SIDE_BY_SIDE: usize = 4;
+
 /// A register: an index into the values.
 pub(super) type Register = u32;
 
@@ -79,11 +82,11 @@ impl Tape {
             let instruction = &code.instructions[index];
             let operands = allocation.operands(step, instruction);
             let [first, second] = allocation.results(instruction);
-            if kind != Some(Kind::of(instruction)) {
+            let [a, b, c, d] = operands;
+            if kind != Some(Kind::of(instruction)) || tape.waits(a) {
                 kind = Some(Kind::of(instruction));
                 tape.begin(Kind::of(instruction));
             }
-            let [a, b, c, d] = operands;
             let end = match tape.runs.last_mut().expect("a run has begun") {
                 Run::Unary(_, rows) => {
                     tape.unary.push([first, a]);
@@ -112,6 +115,14 @@ impl Tape {
         tape.outputs = code.outputs.iter().map(register).collect();
         tape.registers = allocation.registers;
         tape
+    }
+
+    /// Whether this is the angle of a sine of one that is computed side by side with it, in the run
+    /// so far: all angles are read before.
+    fn waits(&self, angle: Register) -> bool {
+        let Some(Run::SinCos(rows)) = self.runs.last() else { return false };
+        let beside = rows.end.saturating_sub(SIDE_BY_SIDE - 1).max(rows.start);
+        self.sincos[beside..rows.end].iter().any(|row| row[..2].contains(&angle))
     }
 
     fn begin(&mut self, kind: Kind) {

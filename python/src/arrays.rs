@@ -7,6 +7,8 @@ use numpy::ndarray::{ArrayView2, Axis};
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
+use pyo3::types::PyTuple;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// An argument: of one sample, or with a sample in each row.
@@ -141,6 +143,22 @@ impl Rows<'_> {
     pub(crate) fn is_finite(&self) -> bool {
         !self.has_others.load(Ordering::Relaxed)
     }
+
+    /// Copies samples that do not stand one after the other: column by column, as they are in arrays
+    /// of Fortran's order.
+    fn copy(&self, samples: Range<usize>, room: &mut Vec<f64>) {
+        room.resize(samples.len() * self.entries, 0.0);
+        for entry in 0..self.entries {
+            let own = room[entry..].iter_mut().step_by(self.entries);
+            if self.is_repeated {
+                own.for_each(|own| *own = self.view[[0, entry]]);
+                continue;
+            }
+            let column = self.view.column(entry);
+            let numbers = column.split_at(Axis(0), samples.start).1;
+            own.zip(numbers).for_each(|(own, number)| *own = *number);
+        }
+    }
 }
 
 impl Samples for Rows<'_> {
@@ -152,42 +170,52 @@ impl Samples for Rows<'_> {
         self.samples
     }
 
-    fn column(&self, entry: usize, first: usize, column: &mut [f64]) {
-        if self.is_repeated {
-            column.fill(self.view[[0, entry]]);
-        } else {
-            let rows = self.view.column(entry);
-            match rows.as_slice() {
-                Some(rows) => column.copy_from_slice(&rows[first..first + column.len()]),
-                None => {
-                    let rows = rows.split_at(Axis(0), first).1;
-                    for (own, value) in column.iter_mut().zip(rows) {
-                        *own = *value;
-                    }
-                }
+    fn rows<'a>(&'a self, samples: Range<usize>, room: &'a mut Vec<f64>) -> &'a [f64] {
+        let rows = match self.view.as_slice() {
+            Some(numbers) if !self.is_repeated => {
+                &numbers[samples.start * self.entries..samples.end * self.entries]
             }
-        }
-        if !are_finite(column) {
+            _ => {
+                self.copy(samples, room);
+                &room[..]
+            }
+        };
+        if !are_finite(rows) {
             self.has_others.store(true, Ordering::Relaxed);
         }
+        rows
     }
 }
 
-/// Whether all numbers are finite: zero times another one is no zero. Eight sums side by side wait
-/// for no other.
+/// Whether all numbers are finite. Sums of others are not, however they come about; a sum of finite
+/// ones that is too large is looked at again. Sixteen sums side by side wait for no other.
 fn are_finite(numbers: &[f64]) -> bool {
-    let mut sums = [0.0; 8];
-    let eights = numbers.chunks_exact(8);
-    let rest = eights.remainder();
-    for eight in eights {
-        for (sum, number) in sums.iter_mut().zip(eight) {
-            *sum += 0.0 * number;
+    let mut sums = [0.0; 16];
+    let parts = numbers.chunks_exact(16);
+    let rest = parts.remainder();
+    for part in parts {
+        for (sum, number) in sums.iter_mut().zip(part) {
+            *sum += number;
         }
     }
-    sums.iter().all(|sum| !sum.is_nan()) && rest.iter().all(|one| one.is_finite())
+    let all = sums.iter().chain(rest).sum::<f64>();
+    all.is_finite() || numbers.iter().all(|number| number.is_finite())
 }
 
 /// A new array of zeros.
 pub(crate) fn zeros<'py>(py: Python<'py>, shape: &[usize]) -> Bound<'py, PyArrayDyn<f64>> {
     PyArrayDyn::zeros(py, shape, false)
+}
+
+static EMPTY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+
+/// A new array, for results that fill it. Memory that numpy has had before would have to be filled
+/// with zeros, which takes as long as a function of a small robot.
+pub(crate) fn unfilled<'py>(
+    py: Python<'py>,
+    shape: Vec<usize>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let make = EMPTY
+        .get_or_try_init(py, || Ok::<_, PyErr>(py.import("numpy")?.getattr("empty")?.unbind()))?;
+    Ok(make.bind(py).call1((PyTuple::new(py, shape)?,))?.cast_into::<PyArrayDyn<f64>>()?)
 }

@@ -1,6 +1,6 @@
 //! Calls of a robot's functions on arrays of numpy.
 
-use crate::arrays::{Given, Rows, zeros};
+use crate::arrays::{Given, Rows, unfilled, zeros};
 use crate::failure::{Failure, Wrong, internal};
 use denavit::function::FunctionName;
 use denavit::model::Robot;
@@ -91,11 +91,11 @@ fn call_rows<'py>(
     let many = given.iter().find(|one| !one.is_one());
     let samples = many.map_or(1, Given::samples);
     let rows = given.iter().map(|one| one.rows(samples)).collect::<PyResult<Vec<Rows<'_>>>>()?;
-    let arrays: Vec<_> = function
+    let arrays = function
         .outputs()
         .iter()
-        .map(|output| zeros(py, &[&[samples], &output.shape[..]].concat()))
-        .collect();
+        .map(|output| unfilled(py, [&[samples], &output.shape[..]].concat()))
+        .collect::<PyResult<Vec<_>>>()?;
     {
         let mut rooms: Vec<_> = arrays.iter().map(|array| array.readwrite()).collect();
         let mut outputs = Vec::with_capacity(rooms.len());

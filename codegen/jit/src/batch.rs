@@ -4,8 +4,7 @@
 use crate::compiler::{Unsupported, check_entries};
 use crate::lanes::Lanes;
 use crate::pairs::Pairs;
-#[cfg(target_arch = "x86_64")]
-use crate::wide::Wide;
+use crate::wide::{Layout, Wide};
 use denavit_codegen::program::{EvaluateBatch, Routine, ShapeMismatch};
 
 /// A routine made ready to be called on many samples for one set of parameters, as machine code.
@@ -23,7 +22,6 @@ pub struct CompiledBatch {
 #[derive(Clone, Debug)]
 enum BatchCode {
     Pairs(Pairs),
-    #[cfg(target_arch = "x86_64")]
     Wide(Wide),
 }
 
@@ -59,10 +57,7 @@ impl CompiledBatch {
         }
         let code = match lanes {
             Lanes::Two => BatchCode::Pairs(Pairs::new(routine, prelude)?),
-            #[cfg(target_arch = "x86_64")]
-            wide => BatchCode::Wide(Wide::new(routine, prelude, wide)?),
-            #[cfg(not(target_arch = "x86_64"))]
-            _ => unreachable!("wide code is for one kind of processors"),
+            wide => BatchCode::Wide(Wide::new(routine, prelude, wide, &Layout::Columns)?),
         };
         Ok(Self {
             code,
@@ -79,14 +74,13 @@ impl CompiledBatch {
 
     // Machine code can only be called unsafely.
     #[allow(unsafe_code)]
-    fn call(&mut self, inputs: &[*const f64], outputs: &[*mut f64], blocks: usize) {
+    fn call(&mut self, inputs: &mut [*const f64], outputs: &mut [*mut f64], blocks: usize) {
         assert!(inputs.len() == self.inputs && outputs.len() == self.outputs);
         // SAFETY: there is an address for each column; that each has numbers for the blocks is what
         // `evaluate` compared, and the outputs are borrowed by it alone.
         unsafe {
             match &mut self.code {
                 BatchCode::Pairs(code) => code.call(inputs, outputs, blocks),
-                #[cfg(target_arch = "x86_64")]
                 BatchCode::Wide(code) => code.call(inputs, outputs, blocks),
             }
         }
@@ -101,9 +95,10 @@ impl CompiledBatch {
             given.extend((0..lanes).map(|lane| there[lane.min(rest - 1)]));
         }
         let mut results = vec![0.0; self.outputs * lanes];
-        let from: Vec<*const f64> = given.chunks_exact(lanes).map(<[f64]>::as_ptr).collect();
-        let to: Vec<*mut f64> = results.chunks_exact_mut(lanes).map(<[f64]>::as_mut_ptr).collect();
-        self.call(&from, &to, 1);
+        let mut from: Vec<*const f64> = given.chunks_exact(lanes).map(<[f64]>::as_ptr).collect();
+        let mut to: Vec<*mut f64> =
+            results.chunks_exact_mut(lanes).map(<[f64]>::as_mut_ptr).collect();
+        self.call(&mut from, &mut to, 1);
         for (column, results) in outputs.iter_mut().zip(results.chunks_exact(lanes)) {
             let first = column.len() - rest;
             column[first..].copy_from_slice(&results[..rest]);
@@ -128,9 +123,10 @@ impl EvaluateBatch for CompiledBatch {
         let samples = ShapeMismatch::check_columns(self.inputs, inputs, self.outputs, outputs)?;
         let (blocks, rest) = (samples / self.lanes.count(), samples % self.lanes.count());
         if blocks > 0 {
-            let from: Vec<*const f64> = inputs.iter().map(|column| column.as_ptr()).collect();
-            let to: Vec<*mut f64> = outputs.iter_mut().map(|column| column.as_mut_ptr()).collect();
-            self.call(&from, &to, blocks);
+            let mut from: Vec<*const f64> = inputs.iter().map(|column| column.as_ptr()).collect();
+            let mut to: Vec<*mut f64> =
+                outputs.iter_mut().map(|column| column.as_mut_ptr()).collect();
+            self.call(&mut from, &mut to, blocks);
         }
         if rest > 0 {
             self.evaluate_rest(inputs, outputs, rest);

@@ -1,9 +1,14 @@
 //! Compiles the functions of a model in memory.
 //!
 //! A model that is read at run time need not wait for rustc: its straight-line code becomes machine
-//! code here, within milliseconds, by Cranelift. [`Compiled`] is called as the reference
-//! interpreter [`Evaluator`](denavit_codegen::program::Evaluator) is, [`CompiledBatch`] as its
-//! [`BatchEvaluator`](denavit_codegen::program::BatchEvaluator); both give the bits of theirs.
+//! code here, within milliseconds. [`Compiled`] is called as the reference interpreter
+//! [`Evaluator`](denavit_codegen::program::Evaluator) is, [`CompiledBatch`] as its
+//! [`BatchEvaluator`](denavit_codegen::program::BatchEvaluator), and [`CompiledRows`] as that is,
+//! but with samples one after the other; all give the bits of theirs.
+//!
+//! Cranelift makes code for one sample, and for pairs of them. On processors of x86-64 a short
+//! generator of our own makes code for four samples at a time (AVX2) or eight (AVX-512); which
+//! [`Lanes`] there are is asked at run time.
 //!
 //! ```
 //! use denavit_codegen::derive::{Flavour, derive};
@@ -30,12 +35,17 @@ mod external;
 mod lanes;
 mod machine;
 mod pairs;
+mod rows;
 mod single;
 mod translate;
 #[cfg(target_arch = "x86_64")]
+mod wide;
+#[cfg(not(target_arch = "x86_64"))]
+#[path = "narrow.rs"]
 mod wide;
 
 pub use batch::CompiledBatch;
 pub use compiler::{Unsupported, is_supported};
 pub use lanes::Lanes;
+pub use rows::CompiledRows;
 pub use single::Compiled;

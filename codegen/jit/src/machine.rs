@@ -97,13 +97,13 @@ pub(crate) struct WideMachine {
     thorough: Option<usize>,
 }
 
-/// Columns of the arguments, constants, columns of the results, scratch memory, bytes of each column
+/// Addresses of the arguments, constants, addresses of the results, scratch memory, bytes of a column
 /// before the first block and before the end. The result is how many bytes are done.
 #[cfg(target_arch = "x86_64")]
 type WideFunction = unsafe extern "sysv64" fn(
-    *const *const f64,
+    *mut *const f64,
     *const Line,
-    *const *mut f64,
+    *mut *mut f64,
     *mut Line,
     usize,
     usize,
@@ -121,13 +121,13 @@ impl WideMachine {
     /// Calls the code on blocks of samples; a column has `size` bytes of each.
     ///
     /// # Safety
-    /// The processor has the instructions; `inputs` and `outputs` hold an address of all blocks for
-    /// each column, and `table` and `scratch` have the lengths that the code was written for.
+    /// The processor has the instructions; `inputs` and `outputs` hold the addresses of all blocks
+    /// that the code reads and writes, and `table` and `scratch` have the lengths that the code was written for.
     pub(crate) unsafe fn call(
         &self,
-        inputs: &[*const f64],
+        inputs: &mut [*const f64],
         table: &[Line],
-        outputs: &[*mut f64],
+        outputs: &mut [*mut f64],
         scratch: &mut [Line],
         size: usize,
         blocks: usize,
@@ -140,7 +140,7 @@ impl WideMachine {
             };
             let mut call = |function: WideFunction, from: usize, to: usize| {
                 let (table, scratch) = (table.as_ptr(), scratch.as_mut_ptr());
-                function(inputs.as_ptr(), table, outputs.as_ptr(), scratch, from, to)
+                function(inputs.as_mut_ptr(), table, outputs.as_mut_ptr(), scratch, from, to)
             };
             let mut done = 0;
             loop {

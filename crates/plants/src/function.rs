@@ -3,26 +3,21 @@
 //! A [`Plant`](super::Plant) is what a simulation needs of a robot, in memory of its own. Here is
 //! each function by itself, called from any thread: on one sample, or on many by all processors.
 
-use super::native::{NativeBatch, NativeRoutine};
+use super::native::{NativeRoutine, NativeRows};
 use crate::error::Error;
 use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::Robot;
-use denavit_codegen::program::{
-    ArgumentShape, EvaluateBatch, OutputShape, Routine, ShapeMismatch, lower,
-};
+use denavit_codegen::program::{ArgumentShape, OutputShape, Routine, ShapeMismatch, lower};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::OnceLock;
 
-/// Numbers that a thread has in columns at a time: they stay in a processor's nearest cache, beside
-/// the rows that they come from.
+/// Numbers that a thread takes at a time: they stay in a processor's nearest cache, so that what is
+/// asked of them before the function reads them costs little.
 const NUMBERS_AT_A_TIME: usize = 3 << 10;
 
-/// Numbers of a line of a cache. Columns begin an odd number of lines apart, so that they do not
-/// all share the same few lines.
-const LINE: usize = 8;
-
-/// Samples that a thread takes at a time: at least so many, or the columns cost more than the
+/// Samples that a thread takes at a time: at least so many, or their slices cost more than the
 /// function, and at most so many, or small batches would be work for one thread.
 const FEWEST_AT_A_TIME: usize = 16;
 const MOST_AT_A_TIME: usize = 256;
@@ -38,8 +33,9 @@ pub trait Samples: Sync {
     /// Number of samples.
     fn samples(&self) -> usize;
 
-    /// Copies one entry of the samples from `first` on, as many as `column` has.
-    fn column(&self, entry: usize, first: usize, column: &mut [f64]);
+    /// The numbers of some samples, one sample after the other: where they are, or in `room`, where
+    /// they are copied to if they stand otherwise in memory.
+    fn rows<'a>(&'a self, samples: Range<usize>, room: &'a mut Vec<f64>) -> &'a [f64];
 }
 
 /// A function of a robot as machine code, or interpreted where there is no code generator.
@@ -48,7 +44,7 @@ pub struct RobotFunction {
     routine: Routine,
     single: NativeRoutine,
     /// Made when many samples come first.
-    batch: OnceLock<NativeBatch>,
+    batch: OnceLock<NativeRows>,
 }
 
 impl RobotFunction {
@@ -109,20 +105,16 @@ impl RobotFunction {
         let inputs: usize = self.arguments().iter().map(|argument| argument.len).sum();
         let wide = inputs + widths.iter().sum::<usize>();
         let rows = NUMBERS_AT_A_TIME / wide.max(1);
-        // an even number of lines
-        let rows = rows.clamp(FEWEST_AT_A_TIME, MOST_AT_A_TIME).next_multiple_of(2 * LINE);
+        let rows = rows.clamp(FEWEST_AT_A_TIME, MOST_AT_A_TIME).next_multiple_of(FEWEST_AT_A_TIME);
         let mut blocks: Vec<Vec<&mut [f64]>> = Vec::new();
         blocks.resize_with(samples.div_ceil(rows), || Vec::with_capacity(widths.len()));
-        for (output, &width) in outputs.iter_mut().zip(&widths).filter(|(_, width)| **width > 0) {
-            for (block, part) in blocks.iter_mut().zip(output.chunks_mut(rows * width)) {
-                block.push(part);
-            }
+        for (output, &width) in outputs.iter_mut().zip(&widths) {
+            // an output may have no entries
+            let mut parts = output.chunks_mut((rows * width).max(1));
+            blocks.iter_mut().for_each(|block| block.push(parts.next().unwrap_or_default()));
         }
-        let batch = self.batch.get_or_init(|| NativeBatch::new(&self.routine, &[]));
-        let worker = || {
-            let stride = rows + LINE;
-            Worker { batch: batch.clone(), columns: vec![0.0; wide * stride], stride }
-        };
+        let batch = self.batch.get_or_init(|| NativeRows::new(&self.routine, &[]));
+        let worker = || Worker { batch: batch.clone(), rooms: vec![Vec::new(); arguments.len()] };
         let run = |worker: &mut Worker, (block, outputs): (usize, Vec<&mut [f64]>)| {
             let first = block * rows;
             worker.run(first..samples.min(first + rows), arguments, outputs)
@@ -158,43 +150,25 @@ impl RobotFunction {
 
 /// What a thread needs of its own.
 struct Worker {
-    batch: NativeBatch,
-    /// Columns of the arguments, then of the results, `stride` numbers apart.
-    columns: Vec<f64>,
-    stride: usize,
+    batch: NativeRows,
+    /// For each argument, where its rows are copied to if they have to be.
+    rooms: Vec<Vec<f64>>,
 }
 
 impl Worker {
     /// Calls the function on some samples; `outputs` are their parts of the result.
     fn run(
         &mut self,
-        samples: std::ops::Range<usize>,
+        samples: Range<usize>,
         arguments: &[&dyn Samples],
-        outputs: Vec<&mut [f64]>,
+        mut outputs: Vec<&mut [f64]>,
     ) -> Result<(), ShapeMismatch> {
-        let count = samples.len();
-        let (given, found) = self.columns.split_at_mut(self.batch.inputs() * self.stride);
-        let mut columns = given.chunks_exact_mut(self.stride);
-        for argument in arguments {
-            for (entry, column) in (0..argument.entries()).zip(&mut columns) {
-                argument.column(entry, samples.start, &mut column[..count]);
-            }
-        }
-        let inputs: Vec<&[f64]> =
-            given.chunks_exact(self.stride).map(|column| &column[..count]).collect();
-        let mut results: Vec<&mut [f64]> =
-            found.chunks_exact_mut(self.stride).map(|column| &mut column[..count]).collect();
-        self.batch.evaluate(&inputs, &mut results)?;
-        let mut columns = results.iter();
-        for output in outputs {
-            let width = output.len() / count;
-            for (entry, column) in (0..width).zip(&mut columns) {
-                for (row, value) in output.chunks_exact_mut(width).zip(column.iter()) {
-                    row[entry] = *value;
-                }
-            }
-        }
-        Ok(())
+        let given: Vec<&[f64]> = arguments
+            .iter()
+            .zip(&mut self.rooms)
+            .map(|(argument, room)| argument.rows(samples.clone(), room))
+            .collect();
+        self.batch.evaluate(samples.len(), &given, &mut outputs)
     }
 }
 

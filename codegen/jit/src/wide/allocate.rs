@@ -85,7 +85,13 @@ impl Allocation<'_> {
 
     /// Sees that a value is in memory before it leaves its register.
     fn save(&mut self, value: Value, register: u8) {
-        if self.registers.memory(value, self.source(value)).is_none() {
+        let is_there = match self.registers.memory(value, self.source(value)) {
+            None => false,
+            // Rows are read once: that takes as long as several numbers.
+            Some(Place::Column(_)) => self.assembler.reads_columns(),
+            Some(_) => true,
+        };
+        if !is_there {
             let slot = self.registers.give_slot(value);
             self.assembler.keep(register, slot);
         }
@@ -113,12 +119,16 @@ impl Allocation<'_> {
         if let Some(register) = self.registers.register(value) {
             return Place::Register(register);
         }
-        let is_constant = matches!(self.source(value), Source::Constant(_));
+        let memory = self.memory(value);
+        if matches!(memory, Place::Column(_)) && !self.assembler.reads_columns() {
+            return Place::Register(self.in_register(value));
+        }
+        let is_constant = matches!(memory, Place::Table(_));
         let candidate = self.registers.candidate(&self.uses);
         let held = self.registers.holds[usize::from(candidate)];
         let until = held.map_or(NEVER, |held| self.uses.next[held as usize]);
         if is_constant || self.uses.next[value as usize] >= until {
-            return self.memory(value);
+            return memory;
         }
         Place::Register(self.in_register(value))
     }

@@ -11,8 +11,12 @@
 //! | `rcx` | `r15` | scratch memory |
 //! | `r8` | `rbx` | bytes of each column before the first block |
 //! | `r9` | `rbp` | bytes of each column before the end |
+//!
+//! Where samples are rows there is one address for each argument and each output, which goes on with
+//! each block; bytes are counted as of columns.
 
 use super::calls::Callee;
+use super::layout::{Entry, Memory};
 use super::steps::{Comparison, Operation};
 use crate::lanes::Lanes;
 use iced_x86::{Code, Encoder, IcedError, Instruction, MemoryOperand, Register};
@@ -45,6 +49,12 @@ pub(super) enum Form {
 const HOLDS: Register = Register::K1;
 /// The mask of ordinary angles.
 const ORDINARY: Register = Register::K7;
+/// The mask of a gather, and one that is never written: what waits for no mask.
+const GATHERED: Register = Register::K6;
+const UNWRITTEN: Register = Register::K0;
+/// The last registers, where samples are rows: one for parts of a block; the other, of eight, has
+/// the distances of samples.
+const RESERVED: u8 = 2;
 /// Callee-saved registers, in the order in which they are saved.
 const SAVED: [Register; 6] =
     [Register::RBX, Register::RBP, Register::R12, Register::R13, Register::R14, Register::R15];
@@ -59,7 +69,10 @@ pub(super) const FIRST_SLOT: u32 = 3;
 pub(super) struct Assembler {
     encoder: Encoder,
     lanes: Lanes,
+    memory: Memory,
     bytes: u64,
+    /// The line of the table that the register of distances holds.
+    distances: Option<u32>,
 }
 
 /// A function that is being written.
@@ -71,8 +84,8 @@ pub(super) struct Loop {
 }
 
 impl Assembler {
-    pub(super) fn new(lanes: Lanes) -> Self {
-        Self { encoder: Encoder::new(64), lanes, bytes: 0 }
+    pub(super) fn new(lanes: Lanes, memory: Memory) -> Self {
+        Self { encoder: Encoder::new(64), lanes, memory, bytes: 0, distances: None }
     }
 
     /// Bytes that are written.
@@ -88,9 +101,19 @@ impl Assembler {
         self.lanes == Lanes::Eight
     }
 
-    /// Vector registers.
-    pub(super) fn registers(&self) -> u8 {
+    /// All vector registers.
+    fn all_registers(&self) -> u8 {
         if self.is_eight() { 32 } else { 16 }
+    }
+
+    /// Vector registers for values.
+    pub(super) fn registers(&self) -> u8 {
+        self.all_registers() - if self.memory.is_rows { RESERVED } else { 0 }
+    }
+
+    /// Whether instructions read arguments from memory as they are there.
+    pub(super) fn reads_columns(&self) -> bool {
+        !self.memory.is_rows
     }
 
     fn width(&self) -> i64 {
@@ -159,6 +182,11 @@ impl Assembler {
 
     /// to = place
     pub(super) fn load(&mut self, to: u8, place: Place) {
+        if let Place::Column(column) = place
+            && self.memory.is_rows
+        {
+            return self.gather(to, self.memory.inputs[column as usize]);
+        }
         let to = self.vector(to);
         let instruction = match (place, self.is_eight()) {
             (Place::Register(from), true) => {
@@ -196,8 +224,93 @@ impl Assembler {
 
     /// Writes a register to a column of the results.
     pub(super) fn store_column(&mut self, from: u8, column: u32) {
+        if self.memory.is_rows {
+            return self.scatter(from, self.memory.outputs[column as usize]);
+        }
         let memory = self.column(Register::R14, column);
         self.store(from, memory);
+    }
+
+    /// The address of an array, and where its number is of a sample of the block.
+    fn row(&mut self, arrays: Register, entry: Entry) -> impl Fn(u8) -> MemoryOperand + use<> {
+        let address = based(arrays, 8 * i64::from(entry.array));
+        self.write(Instruction::with2(Code::Mov_r64_rm64, Register::RAX, address));
+        move |sample| based(Register::RAX, entry.offset + i64::from(sample) * entry.stride)
+    }
+
+    /// Reads a number of all samples of a block, from rows.
+    fn gather(&mut self, to: u8, entry: Entry) {
+        let row = self.row(Register::R12, entry);
+        if !self.is_eight() {
+            let part = Register::XMM0 + u32::from(self.all_registers() - 1);
+            let low = Register::XMM0 + u32::from(to);
+            for (half, first) in [(low, 0), (part, 2)] {
+                let (one, other) = (row(first), row(first + 1));
+                self.write(Instruction::with2(Code::VEX_Vmovsd_xmm_m64, half, one));
+                self.write(Instruction::with3(Code::VEX_Vmovhpd_xmm_xmm_m64, half, half, other));
+            }
+            let code = Code::VEX_Vinsertf128_ymm_ymm_xmmm128_imm8;
+            let to = self.vector(to);
+            return self.write(Instruction::with4(code, to, to, part, 1_u32));
+        }
+        let distances = self.vector(self.all_registers() - 2);
+        if self.distances != Some(entry.distances) {
+            self.distances = Some(entry.distances);
+            let line = based(Register::R13, 64 * i64::from(entry.distances));
+            self.write(Instruction::with2(Code::EVEX_Vmovupd_zmm_k1z_zmmm512, distances, line));
+        }
+        let ones = UNWRITTEN;
+        self.write(Instruction::with3(Code::VEX_Kxnorw_kr_kr_kr, GATHERED, ones, ones));
+        let mut memory = row(0);
+        memory.index = distances;
+        memory.scale = 8;
+        let code = Code::EVEX_Vgatherqpd_zmm_k1_vm64z;
+        let gather = Instruction::with2(code, self.vector(to), memory).map(|mut gather| {
+            gather.set_op_mask(GATHERED);
+            gather
+        });
+        self.write(gather);
+    }
+
+    /// Writes a number of all samples of a block to rows, pair by pair.
+    fn scatter(&mut self, from: u8, entry: Entry) {
+        let row = self.row(Register::R14, entry);
+        let (low, high, extract) = match self.is_eight() {
+            true => (
+                Code::EVEX_Vmovsd_m64_k1_xmm,
+                Code::EVEX_Vmovhpd_m64_xmm,
+                Code::EVEX_Vextractf32x4_xmmm128_k1z_zmm_imm8,
+            ),
+            false => (
+                Code::VEX_Vmovsd_m64_xmm,
+                Code::VEX_Vmovhpd_m64_xmm,
+                Code::VEX_Vextractf128_xmmm128_ymm_imm8,
+            ),
+        };
+        let whole = self.vector(from);
+        let part = Register::XMM0 + u32::from(self.all_registers() - 1);
+        let pairs = if self.is_eight() { 4 } else { 2 };
+        for pair in 0..pairs {
+            let mut both = Register::XMM0 + u32::from(from);
+            if pair > 0 {
+                self.write(Instruction::with3(extract, part, whole, u32::from(pair)));
+                both = part;
+            }
+            self.write(Instruction::with2(low, row(2 * pair), both));
+            self.write(Instruction::with2(high, row(2 * pair + 1), both));
+        }
+    }
+
+    /// Addresses of rows go to the next block.
+    fn advance(&mut self) {
+        let samples = i64::try_from(self.lanes.count()).expect("eight at most");
+        for (arrays, row) in [(Register::R12, 0), (Register::R14, 1)] {
+            for (array, stride) in (0..).zip(self.memory.strides[row].clone()) {
+                let block = i32::try_from(samples * stride).expect("a block is below 2^31 bytes");
+                let address = based(arrays, 8 * array);
+                self.write(Instruction::with2(Code::Add_rm64_imm32, address, block));
+            }
+        }
     }
 
     /// to = a operation b
@@ -356,6 +469,7 @@ impl Assembler {
         let address = callee.address(self.lanes);
         self.write(Instruction::with2(Code::Mov_r64_imm64, Register::RAX, address));
         self.write(Instruction::with1(Code::Call_rm64, Register::RAX));
+        self.distances = None;
         if watches {
             self.write(match self.is_eight() {
                 true => Instruction::with2(Code::VEX_Kmovw_kr_km16, ORDINARY, watched),
@@ -386,6 +500,7 @@ impl Assembler {
         let mut blocks = Loop { head: 0, exits: Vec::new(), watches };
         self.exit(Code::Je_rel32_64, &mut blocks);
         blocks.head = self.bytes;
+        self.distances = None;
         if watches {
             let (mask, bits) = (ORDINARY, Register::R11D);
             self.write(match self.is_eight() {
@@ -413,6 +528,7 @@ impl Assembler {
             self.write(Instruction::with2(Code::Cmp_rm32_imm32, bits, ordinary));
             self.exit(Code::Jne_rel32_64, &mut blocks);
         }
+        self.advance();
         let width = i32::try_from(self.width()).expect("32 or 64");
         self.write(Instruction::with2(Code::Add_rm64_imm8, Register::RBX, width));
         self.write(Instruction::with2(Code::Cmp_r64_rm64, Register::RBX, Register::RBP));

@@ -11,6 +11,7 @@
 mod allocate;
 mod assemble;
 mod calls;
+mod layout;
 mod lower;
 mod registers;
 mod steps;
@@ -20,7 +21,10 @@ use crate::compiler::Unsupported;
 use crate::lanes::Lanes;
 use crate::machine::WideMachine;
 use denavit_codegen::program::Routine;
+use layout::Memory;
 use std::sync::Arc;
+
+pub(crate) use layout::Layout;
 
 /// Eight numbers, aligned as the widest register is.
 #[derive(Clone, Copy, Debug, Default)]
@@ -47,10 +51,13 @@ impl Wide {
         routine: &Routine,
         prelude: &[f64],
         lanes: Lanes,
+        layout: &Layout,
     ) -> Result<Self, Unsupported> {
         assert!(lanes != Lanes::Two && lanes.is_available(), "no registers for so many samples");
-        let mut assembler = assemble::Assembler::new(lanes);
         let straight = lower::lower(routine, prelude, lanes, lower::Turns::Inline, &[]);
+        let mut table = table(&straight.constants, lanes);
+        let memory = Memory::new(layout, &mut table);
+        let mut assembler = assemble::Assembler::new(lanes, memory);
         let mut slots = allocate::assemble(&straight, &mut assembler);
         let mut thorough = None;
         if straight.watches {
@@ -65,24 +72,24 @@ impl Wide {
         Ok(Self {
             lanes,
             machine: Arc::new(machine),
-            table: table(&straight.constants, lanes).into(),
+            table: table.into(),
             scratch: vec![Line::default(); (slots * lanes.count()).div_ceil(8)],
         })
     }
 
-    /// Computes whole blocks of samples.
+    /// Computes whole blocks of samples. Addresses of rows go to the next block with each.
     ///
     /// # Safety
-    /// `inputs` and `outputs` hold an address of `blocks` blocks of numbers for each column of the
-    /// routine, and nothing else reads or writes the outputs meanwhile.
+    /// `inputs` and `outputs` hold the addresses of the layout, of `blocks` blocks of numbers each,
+    /// and nothing else reads or writes the outputs meanwhile.
     #[allow(unsafe_code)]
     pub(crate) unsafe fn call(
         &mut self,
-        inputs: &[*const f64],
-        outputs: &[*mut f64],
+        inputs: &mut [*const f64],
+        outputs: &mut [*mut f64],
         blocks: usize,
     ) {
-        // SAFETY: the caller says that columns are there; the table and the scratch memory have the
+        // SAFETY: the caller says that numbers are there; the table and the scratch memory have the
         // sizes that the code was compiled for, on a processor that has its instructions.
         unsafe {
             let block = 8 * self.lanes.count();

@@ -83,11 +83,11 @@ impl Registers {
     pub(super) fn memory(&self, value: Value, source: Source) -> Option<Place> {
         match source {
             Source::Constant(row) => Some(Place::Table(row)),
-            Source::Column(column) => Some(Place::Column(column)),
-            Source::Step => {
-                let slot = self.slot[value as usize];
-                (slot != NONE).then_some(Place::Scratch(slot))
+            _ if self.slot[value as usize] != NONE => {
+                Some(Place::Scratch(self.slot[value as usize]))
             }
+            Source::Column(column) => Some(Place::Column(column)),
+            Source::Step => None,
         }
     }
 

@@ -2,6 +2,7 @@ use super::{RobotFunction, Samples};
 use crate::shipped;
 use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::{self, Robot};
+use std::ops::Range;
 
 /// Samples one after the other.
 struct Rows(Vec<Vec<f64>>);
@@ -15,10 +16,9 @@ impl Samples for Rows {
         self.0.len()
     }
 
-    fn column(&self, entry: usize, first: usize, column: &mut [f64]) {
-        for (value, row) in column.iter_mut().zip(&self.0[first..]) {
-            *value = row[entry];
-        }
+    fn rows<'a>(&'a self, samples: Range<usize>, room: &'a mut Vec<f64>) -> &'a [f64] {
+        *room = self.0[samples].concat();
+        room
     }
 }
 

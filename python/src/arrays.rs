@@ -144,8 +144,8 @@ impl Rows<'_> {
         !self.has_others.load(Ordering::Relaxed)
     }
 
-    /// Copies samples that do not stand one after the other: column by column, as they are in arrays
-    /// of Fortran's order.
+    /// Copies samples that do not stand one after the other: column by column, as they are in
+    /// arrays of Fortran's order.
     fn copy(&self, samples: Range<usize>, room: &mut Vec<f64>) {
         room.resize(samples.len() * self.entries, 0.0);
         for entry in 0..self.entries {
@@ -171,7 +171,7 @@ impl Samples for Rows<'_> {
     }
 
     fn rows<'a>(&'a self, samples: Range<usize>, room: &'a mut Vec<f64>) -> &'a [f64] {
-        let rows = match self.view.as_slice() {
+        match self.view.as_slice() {
             Some(numbers) if !self.is_repeated => {
                 &numbers[samples.start * self.entries..samples.end * self.entries]
             }
@@ -179,11 +179,13 @@ impl Samples for Rows<'_> {
                 self.copy(samples, room);
                 &room[..]
             }
-        };
+        }
+    }
+
+    fn were_read(&self, rows: &[f64]) {
         if !are_finite(rows) {
             self.has_others.store(true, Ordering::Relaxed);
         }
-        rows
     }
 }
 

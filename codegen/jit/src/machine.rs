@@ -97,8 +97,8 @@ pub(crate) struct WideMachine {
     thorough: Option<usize>,
 }
 
-/// Addresses of the arguments, constants, addresses of the results, scratch memory, bytes of a column
-/// before the first block and before the end. The result is how many bytes are done.
+/// Addresses of the arguments, constants, addresses of the results, scratch memory, bytes of a
+/// column before the first block and before the end. The result is how many bytes are done.
 #[cfg(target_arch = "x86_64")]
 type WideFunction = unsafe extern "sysv64" fn(
     *mut *const f64,
@@ -122,7 +122,8 @@ impl WideMachine {
     ///
     /// # Safety
     /// The processor has the instructions; `inputs` and `outputs` hold the addresses of all blocks
-    /// that the code reads and writes, and `table` and `scratch` have the lengths that the code was written for.
+    /// that the code reads and writes, and `table` and `scratch` have the lengths that it was
+    /// written for.
     pub(crate) unsafe fn call(
         &self,
         inputs: &mut [*const f64],

@@ -5,6 +5,9 @@ use crate::lanes::Lanes;
 use crate::wide::{Layout, Wide};
 use denavit_codegen::program::{OutputShape, Routine, ShapeMismatch};
 
+/// Arguments, and outputs, that a function may have: a list on the stack costs nothing.
+const ARRAYS: usize = 8;
+
 /// A routine made ready to be called on many samples in rows, for one set of parameters, as machine
 /// code: without a transposition before and after.
 ///
@@ -24,7 +27,8 @@ impl CompiledRows {
     /// prelude's values as [`prelude_values`](denavit_codegen::program::prelude_values) gives them.
     ///
     /// # Errors
-    /// If this processor has only registers for two: then columns are faster.
+    /// If this processor has only registers for two: then columns are faster. If the function has
+    /// more than eight arguments or outputs.
     ///
     /// # Panics
     /// If the routine reads beyond its arguments.
@@ -35,7 +39,8 @@ impl CompiledRows {
     /// Compiles `routine` for this number of samples at a time.
     ///
     /// # Errors
-    /// If it is two, or this processor does not have so many lanes.
+    /// If it is two, or this processor does not have so many lanes. If the function has more than
+    /// eight arguments or outputs.
     ///
     /// # Panics
     /// If the routine reads beyond its arguments.
@@ -48,6 +53,9 @@ impl CompiledRows {
         if lanes == Lanes::Two || !lanes.is_available() {
             let reason = format!("no code reads rows of {} samples on it", lanes.count());
             return Err(Unsupported::because(reason));
+        }
+        if routine.arguments.len() > ARRAYS || routine.outputs.len() > ARRAYS {
+            return Err(Unsupported::because(format!("functions have up to {ARRAYS} arrays")));
         }
         let code = Wide::new(routine, prelude, lanes, &Layout::rows(routine))?;
         Ok(Self {
@@ -97,17 +105,19 @@ impl CompiledRows {
     #[allow(unsafe_code)]
     fn call(&mut self, arguments: &[&[f64]], outputs: &mut [&mut [f64]], blocks: usize) {
         let samples = blocks * self.lanes.count();
-        let mut from: Vec<*const f64> = Vec::with_capacity(arguments.len());
-        for (&(_, width), argument) in self.arguments.iter().zip(arguments) {
+        assert!(arguments.len() == self.arguments.len() && outputs.len() == self.outputs.len());
+        let mut from = [std::ptr::null(); ARRAYS];
+        for ((&(_, width), argument), address) in
+            self.arguments.iter().zip(arguments).zip(&mut from)
+        {
             assert!(argument.len() >= samples * width, "rows for all blocks");
-            from.push(argument.as_ptr());
+            *address = argument.as_ptr();
         }
-        let mut to: Vec<*mut f64> = Vec::with_capacity(outputs.len());
-        for (&width, output) in self.outputs.iter().zip(outputs) {
+        let mut to = [std::ptr::null_mut(); ARRAYS];
+        for ((&width, output), address) in self.outputs.iter().zip(outputs).zip(&mut to) {
             assert!(output.len() >= samples * width, "rows for all blocks");
-            to.push(output.as_mut_ptr());
+            *address = output.as_mut_ptr();
         }
-        assert!(from.len() == self.arguments.len() && to.len() == self.outputs.len());
         // SAFETY: there is an address of rows for each argument and each output, and the outputs
         // are borrowed by this call alone.
         unsafe { self.code.call(&mut from, &mut to, blocks) };

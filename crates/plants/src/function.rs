@@ -9,9 +9,8 @@ use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::Robot;
 use denavit_codegen::program::{ArgumentShape, OutputShape, Routine, ShapeMismatch, lower};
-use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// Numbers that a thread takes at a time: they stay in a processor's nearest cache, so that what is
 /// asked of them before the function reads them costs little.
@@ -22,8 +21,13 @@ const NUMBERS_AT_A_TIME: usize = 3 << 10;
 const FEWEST_AT_A_TIME: usize = 16;
 const MOST_AT_A_TIME: usize = 256;
 
-/// Below so many samples other threads are woken for longer than they work.
-const FEWEST_FOR_THREADS: usize = 2 * MOST_AT_A_TIME;
+/// Blocks that a thread takes one after the other: memory is read ahead, and comes from the system
+/// in pages, so that neighbours are for one thread.
+const BLOCKS_AT_A_TIME: usize = 8;
+
+/// Instructions, of all samples, below which other threads are woken for longer than they work: a
+/// processor has about a million in 0.1 ms.
+const FEWEST_FOR_THREADS: usize = 1 << 20;
 
 /// An argument of many samples, in whatever order its numbers are in memory.
 pub trait Samples: Sync {
@@ -36,6 +40,12 @@ pub trait Samples: Sync {
     /// The numbers of some samples, one sample after the other: where they are, or in `room`, where
     /// they are copied to if they stand otherwise in memory.
     fn rows<'a>(&'a self, samples: Range<usize>, room: &'a mut Vec<f64>) -> &'a [f64];
+
+    /// Hears of rows that a function has just read, and that are near the processor therefore: to
+    /// ask something of them costs least now.
+    fn were_read(&self, rows: &[f64]) {
+        let _ = rows;
+    }
 }
 
 /// A function of a robot as machine code, or interpreted where there is no code generator.
@@ -86,8 +96,8 @@ impl RobotFunction {
         self.single.call(arguments, outputs)
     }
 
-    /// Calls the function on every sample, by all threads of rayon's pool. `outputs` has a slice
-    /// for each array of the result; sample after sample, entries as in [`OutputShape`].
+    /// Calls the function on every sample, by this thread and those of rayon's pool. `outputs` has
+    /// a slice for each array of the result; sample after sample, entries as in [`OutputShape`].
     ///
     /// Samples do not touch each other, and each has the bits of a single call, so that results do
     /// not depend on the number of threads.
@@ -106,26 +116,37 @@ impl RobotFunction {
         let wide = inputs + widths.iter().sum::<usize>();
         let rows = NUMBERS_AT_A_TIME / wide.max(1);
         let rows = rows.clamp(FEWEST_AT_A_TIME, MOST_AT_A_TIME).next_multiple_of(FEWEST_AT_A_TIME);
-        let mut blocks: Vec<Vec<&mut [f64]>> = Vec::new();
-        blocks.resize_with(samples.div_ceil(rows), || Vec::with_capacity(widths.len()));
-        for (output, &width) in outputs.iter_mut().zip(&widths) {
-            // an output may have no entries
-            let mut parts = output.chunks_mut((rows * width).max(1));
-            blocks.iter_mut().for_each(|block| block.push(parts.next().unwrap_or_default()));
-        }
         let batch = self.batch.get_or_init(|| NativeRows::new(&self.routine, &[]));
-        let worker = || Worker { batch: batch.clone(), rooms: vec![Vec::new(); arguments.len()] };
-        let run = |worker: &mut Worker, (block, outputs): (usize, Vec<&mut [f64]>)| {
-            let first = block * rows;
-            worker.run(first..samples.min(first + rows), arguments, outputs)
+        let outputs = outputs.iter_mut().map(|output| &mut **output).collect();
+        let left = Mutex::new(Left { samples: 0..samples, outputs, widths: &widths });
+        let at_a_time = rows * BLOCKS_AT_A_TIME.min(samples.div_ceil(4 * rows)).max(1);
+        let work = || {
+            let mut worker =
+                Worker { batch: batch.clone(), rooms: vec![Vec::new(); arguments.len()] };
+            // no thread panics while it has the lock
+            let next = || left.lock().unwrap_or_else(PoisonError::into_inner).take(at_a_time);
+            std::iter::from_fn(next).try_for_each(|mut part| {
+                std::iter::from_fn(|| part.take(rows))
+                    .try_for_each(|block| worker.run(block, arguments))
+            })
         };
-        let blocks = blocks.into_iter().enumerate();
-        if samples < FEWEST_FOR_THREADS {
-            let mut worker = worker();
-            return { blocks }.try_for_each(|block| run(&mut worker, block));
-        }
-        let blocks: Vec<_> = blocks.collect();
-        blocks.into_par_iter().map_init(worker, run).collect()
+        let threads = match samples * self.routine.code.instructions.len() < FEWEST_FOR_THREADS {
+            true => 1,
+            false => rayon::current_num_threads(),
+        };
+        // This thread works, too: it need not wait until others are awake.
+        let others = Mutex::new(Ok(()));
+        let own = rayon::in_place_scope(|scope| {
+            for _ in 1..threads {
+                scope.spawn(|_| {
+                    if let Err(fault) = work() {
+                        *others.lock().unwrap_or_else(PoisonError::into_inner) = Err(fault);
+                    }
+                });
+            }
+            work()
+        });
+        own.and(others.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// The number of samples, if all sizes fit.
@@ -148,6 +169,33 @@ impl RobotFunction {
     }
 }
 
+/// Samples that are still to be computed, with their parts of the outputs.
+struct Left<'a> {
+    samples: Range<usize>,
+    outputs: Vec<&'a mut [f64]>,
+    /// Numbers of a sample, by output.
+    widths: &'a [usize],
+}
+
+impl<'a> Left<'a> {
+    /// The next samples: so many, or those that there are.
+    fn take(&mut self, most: usize) -> Option<Left<'a>> {
+        let count = most.min(self.samples.len());
+        if count == 0 {
+            return None;
+        }
+        let first = self.samples.start;
+        self.samples.start += count;
+        let split = |(output, &width): (&mut &'a mut [f64], &usize)| {
+            let (part, rest) = std::mem::take(output).split_at_mut(count * width);
+            *output = rest;
+            part
+        };
+        let outputs = self.outputs.iter_mut().zip(self.widths).map(split).collect();
+        Some(Left { samples: first..first + count, outputs, widths: self.widths })
+    }
+}
+
 /// What a thread needs of its own.
 struct Worker {
     batch: NativeRows,
@@ -156,19 +204,21 @@ struct Worker {
 }
 
 impl Worker {
-    /// Calls the function on some samples; `outputs` are their parts of the result.
+    /// Calls the function on some samples.
     fn run(
         &mut self,
-        samples: Range<usize>,
+        mut block: Left<'_>,
         arguments: &[&dyn Samples],
-        mut outputs: Vec<&mut [f64]>,
     ) -> Result<(), ShapeMismatch> {
+        let samples = block.samples;
         let given: Vec<&[f64]> = arguments
             .iter()
             .zip(&mut self.rooms)
             .map(|(argument, room)| argument.rows(samples.clone(), room))
             .collect();
-        self.batch.evaluate(samples.len(), &given, &mut outputs)
+        self.batch.evaluate(samples.len(), &given, &mut block.outputs)?;
+        arguments.iter().zip(&given).for_each(|(argument, rows)| argument.were_read(rows));
+        Ok(())
     }
 }
 

@@ -1,10 +1,11 @@
 //! Gives values registers, step by step, and writes the instructions.
 //!
 //! Where all registers are taken, the value that is used last of all goes to memory (Belady): code
-//! without branches knows all uses. Constants and columns of the arguments are in memory anyhow, and
-//! so are values that went there once. Most instructions read one operand from memory.
+//! without branches knows all uses. Constants and columns of the arguments are in memory anyhow,
+//! and so are values that went there once. Most instructions read one operand from memory.
 
-use super::assemble::{Assembler, Form, OPERANDS, Place};
+use super::arithmetic::Form;
+use super::assemble::{Assembler, OPERANDS, Place};
 use super::calls::Callee;
 use super::registers::{NEVER, Registers, Uses};
 use super::steps::{Operation, Source, Step, Straight, Value};

@@ -2,13 +2,14 @@
 //!
 //! The generator that compiles single samples and pairs has no wider registers, so that these have
 //! a short way of their own. [`lower`] makes steps of the code: a step is about an instruction of
-//! the processor, on values that are assigned once. [`allocate`] walks the steps and gives registers
-//! to values; [`assemble`] writes instructions. Each takes time in proportion to the code.
+//! the processor, on values that are assigned once. [`allocate`] walks the steps and gives values
+//! registers; [`assemble`] writes instructions. Each takes time in proportion to the code.
 //!
 //! Sine and cosine are steps among others, so that nothing is called for ordinary angles. A block
 //! of samples with an angle that is not is computed once more by code that calls the runtime.
 
 mod allocate;
+mod arithmetic;
 mod assemble;
 mod calls;
 mod layout;

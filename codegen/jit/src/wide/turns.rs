@@ -82,8 +82,8 @@ impl Turn<'_> {
         self.sub(product, c)
     }
 
-    /// `Scalar::minus_product` where the product is exact: then it is the same whether it is rounded
-    /// or not, and one step is enough.
+    /// `Scalar::minus_product` where the product is exact: then it is the same whether it is
+    /// rounded or not, and one step is enough.
     fn minus_exact_product(&mut self, c: Value, a: Value, b: Value) -> Value {
         self.step(Operation::NegMulAdd, &[a, b, c])
     }

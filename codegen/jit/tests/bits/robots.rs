@@ -29,9 +29,19 @@ fn robots_have_the_bits_of_the_interpreters() {
     }
 }
 
-/// TUlip's largest function has 28000 steps.
+/// All that are shipped. TUlip's largest function has 28000 steps.
 #[test]
-fn tulip_has_the_bits_of_the_interpreters() {
-    let (program, prelude) = program("tulip", Flavour::Baked);
-    compare(&program, &prelude, number);
+fn all_shipped_robots_have_the_bits_of_the_interpreters() {
+    let folder = format!("{}/../../models", env!("CARGO_MANIFEST_DIR"));
+    let mut models: Vec<String> = std::fs::read_dir(folder)
+        .unwrap()
+        .filter_map(|entry| entry.unwrap().file_name().into_string().ok())
+        .filter_map(|name| name.strip_suffix(".json").map(str::to_owned))
+        .collect();
+    models.sort();
+    assert!(models.len() > 10 && models.iter().any(|model| model == "tulip"));
+    for model in models {
+        let (program, prelude) = program(&model, Flavour::Baked);
+        compare(&program, &prelude, number);
+    }
 }

@@ -34,15 +34,17 @@ mod compiler;
 mod external;
 mod lanes;
 mod machine;
+#[cfg(not(target_arch = "x86_64"))]
+mod narrow;
 mod pairs;
 mod rows;
 mod single;
 mod translate;
 #[cfg(target_arch = "x86_64")]
 mod wide;
+
 #[cfg(not(target_arch = "x86_64"))]
-#[path = "narrow.rs"]
-mod wide;
+use narrow as wide;
 
 pub use batch::CompiledBatch;
 pub use compiler::{Unsupported, is_supported};

@@ -82,9 +82,14 @@ pub(crate) struct InColumns {
 impl NativeRows {
     /// Makes `routine` ready, with the values of the prelude.
     pub(crate) fn new(routine: &Routine, prelude: &[f64]) -> Self {
-        if let Ok(code) = CompiledRows::new(routine, prelude) {
-            return Self::Rows(Box::new(code));
+        match CompiledRows::new(routine, prelude) {
+            Ok(code) => Self::Rows(Box::new(code)),
+            Err(_) => Self::in_columns(routine, prelude),
         }
+    }
+
+    /// The same where no machine code reads rows.
+    pub(crate) fn in_columns(routine: &Routine, prelude: &[f64]) -> Self {
         Self::Columns(Box::new(InColumns::new(routine, prelude)))
     }
 

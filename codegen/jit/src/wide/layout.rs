@@ -1,6 +1,6 @@
 //! How samples are in memory, for the code that reads and writes them.
 
-use super::Line;
+use super::machine::Line;
 use denavit_codegen::program::{OutputShape, Routine};
 
 /// How samples are in memory.

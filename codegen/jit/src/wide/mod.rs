@@ -14,23 +14,19 @@ mod assemble;
 mod calls;
 mod layout;
 mod lower;
+mod machine;
 mod registers;
 mod steps;
 mod turns;
 
 use crate::compiler::Unsupported;
 use crate::lanes::Lanes;
-use crate::machine::WideMachine;
 use denavit_codegen::program::Routine;
 use layout::Memory;
+use machine::{Line, WideMachine};
 use std::sync::Arc;
 
 pub(crate) use layout::Layout;
-
-/// Eight numbers, aligned as the widest register is.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(C, align(64))]
-pub(crate) struct Line(pub(crate) [f64; 8]);
 
 /// A routine as code for several samples at once.
 #[derive(Clone, Debug)]

@@ -1,4 +1,5 @@
 use super::{RobotFunction, Samples};
+use crate::native::NativeRows;
 use crate::shipped;
 use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::{self, Robot};
@@ -36,7 +37,11 @@ fn rows(samples: usize, entries: usize, seed: f64) -> Rows {
 fn many_samples_have_the_bits_of_one() {
     let robot = robot("tulip");
     for name in [FunctionName::InverseDynamicsDerivatives, FunctionName::ContactPositions] {
-        let function = RobotFunction::of(&robot, name).unwrap().remove(0);
+        let [function, by_columns] =
+            [(); 2].map(|()| RobotFunction::of(&robot, name).unwrap().remove(0));
+        // what other processors do
+        let batch = NativeRows::in_columns(&by_columns.routine, &[]);
+        assert!(by_columns.batch.set(batch).is_ok());
         let all: usize = function.outputs().iter().map(|output| output.len()).sum();
         for samples in [1, 7, 600] {
             let given: Vec<Rows> =
@@ -46,6 +51,11 @@ fn many_samples_have_the_bits_of_one() {
                 function.outputs().iter().map(|one| vec![0.0; samples * one.len()]).collect();
             let mut slices: Vec<&mut [f64]> = found.iter_mut().map(|one| &mut one[..]).collect();
             function.call_on_samples(&arguments, &mut slices).unwrap();
+            let mut again = found.clone();
+            again.iter_mut().for_each(|array| array.fill(f64::NAN));
+            let mut slices: Vec<&mut [f64]> = again.iter_mut().map(|one| &mut one[..]).collect();
+            by_columns.call_on_samples(&arguments, &mut slices).unwrap();
+            assert!(found == again, "{name}, {samples} samples in columns");
             for sample in 0..samples {
                 let one: Vec<&[f64]> = given.iter().map(|rows| &rows.0[sample][..]).collect();
                 let mut expected = vec![0.0; all];

@@ -6,6 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from ._progress import ProgressLine
 from .errors import Error
 from .fleet import command
 
@@ -74,27 +75,44 @@ def _run(given: argparse.Namespace) -> int:
         runner = on_ray(None if given.ray == "local" else given.ray)
     all_rows = study.count if indices is None else len(indices)
 
-    def show(done: int, count: int) -> None:
-        if sys.stderr.isatty():
-            print(f"\r{done} of {count} rows", end="", file=sys.stderr, flush=True)
+    with ProgressLine() as line:
 
-    computed = studies.run(study, given.output, indices, runner=runner, progress=show)
-    if sys.stderr.isatty():
-        print(file=sys.stderr)
+        def show(done: int, count: int) -> None:
+            line.show(f"{done} of {count} rows")
+
+        computed = studies.run(study, given.output, indices, runner=runner, progress=show)
     print(f"{given.output}: {all_rows} rows, {computed} computed now")
-    table = studies.read_part(given.output).select(["index", "failure"])
+    failed = _failed(given.output)
+    return 1 if all_rows and failed == all_rows else 0
+
+
+def _failed(part: Path) -> int:
+    """How many rows have no answer; says so."""
+    from . import studies
+
+    table = studies.read_part(part).select(["index", "failure"])
     failed = [row for row in table.to_pylist() if row["failure"]]
     if failed:
         first = failed[0]
         said = f"{len(failed)} without an answer; the first, of index {first['index']}:"
         print(f"{said} {first['failure']}", file=sys.stderr)
-    return 1 if all_rows and len(failed) == all_rows else 0
+    return len(failed)
 
 
 def _merge(given: argparse.Namespace) -> int:
     from . import studies
 
     print(f"{given.output}: {studies.merge(given.parts, given.output)} rows")
+    _failed(given.output)
+    start, stop, count = studies.extent(given.output)
+    if count is None:
+        hint = "`study missing STUDY PART ..` says whether the study has others"
+        print(f"these are the rows {start} to {stop - 1}; {hint}", file=sys.stderr)
+        return 0
+    gaps = [(0, start), (stop, count)]
+    said = " and ".join(f"{first} to {end - 1}" for first, end in gaps if first < end)
+    if said:
+        print(f"no part has the rows {said} of the study's {count}", file=sys.stderr)
     return 0
 
 

@@ -130,6 +130,8 @@ def simulate(
     window_s: tuple[float, float] | None = None,
     html: PathLike | None = None,
     beside: PathLike | None = None,
+    shapes: PathLike | None = None,
+    meshes: PathLike | None = None,
     progress: Progress | None = None,
 ) -> Run:
     """Runs a scenario: a path, a shipped name (:func:`denavit.shipped_scenarios`), or a scenario as
@@ -137,12 +139,13 @@ def simulate(
 
     ``log`` is where the log goes, as CSV or, of that ending, as MCAP; ``svg`` where a picture goes,
     of the part ``window_s`` of the run; ``html`` where a page goes, with the run in motion, and
-    with that of the log ``beside`` of the same robot, if there is one.
+    with that of the log ``beside`` of the same robot, if there is one. Links look there like the
+    URDF ``shapes``, whose meshes lie beside it or in the folder ``meshes``.
     """
     with _options.folder() as inside:
         chosen = _options.flags(
             scheme=scheme, step=step_s, output=log, svg=svg, window=window_s, html=html,
-            beside=beside,
+            beside=beside, shapes=shapes, meshes=meshes,
         )
         place = _options.file_of(scenario, "scenario", inside)
         arguments = ["simulate", place, *chosen, "--json"]

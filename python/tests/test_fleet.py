@@ -63,6 +63,11 @@ def test_the_robot_that_changed_is_named_with_its_joint(example, found):
     assert (alarms[0]["effect"], alarms[0]["joint"]) == (hidden["effect"], hidden["at"])
     assert alarms[0]["false_discovery_rate"] <= 0.05 and alarms[0]["log10_odds"] > 2
     assert all(row["is_first"] == (row["night"] == "2026-01-01") for row in table)
+    page = (found / "index.html").read_text()
+    assert "1 alarm among" in page and "(odds 10<sup>" in page
+    assert hidden["effect"].replace("_", " ") in page
+    for raw in ("10^", "nothing_missing", "cannot_tell", "1 alarms"):
+        assert raw not in page
     report = (found / alarms[0]["report"]).read_text()
     assert hidden["effect"] in report.lower()
     steps = pq.read_table(found / "drift.parquet").to_pylist()

@@ -79,7 +79,11 @@ def test_parts_of_any_size_merge_to_the_same_bytes(study_file, tmp_path, capsys)
     parts = [str(tmp_path / f"part-{part}.parquet") for part in (2, 0, 1)]
     assert main(["study", "missing", place, parts[0], parts[1]]) == 1
     assert "3:6" in capsys.readouterr().out
+    assert main(["study", "merge", parts[1], "-o", str(tmp_path / "first.parquet")]) == 0
+    assert "no part has the rows 3 to 9 of the study's 10" in capsys.readouterr().err
     assert main(["study", "merge", *parts, "-o", str(tmp_path / "merged.parquet")]) == 0
+    told = capsys.readouterr().err
+    assert "no part has" not in told and "without an answer" in told
     studies.run(study, tmp_path / "two.parquet", runner=in_processes(2))
     contents = {(tmp_path / f"{name}.parquet").read_bytes() for name in ("whole", "merged", "two")}
     assert len(contents) == 1

@@ -4,14 +4,12 @@ use super::Answer;
 use super::failure::Failure;
 use super::files::read_model_with_effects;
 use super::json::write_json;
-use super::options::{EffectsOption, ModelArgument};
+use super::options::{EffectsOption, ModelArgument, ShapesOption};
 use super::outputs::{on_stdout, write_whole};
 use clap::Args;
 use denavit::program::CodeError;
-use denavit::report::html::Fact;
-use denavit::report::symbolic::{faults_json, model_json, model_text};
+use denavit::report::symbolic::{model_json, model_text, robot_faults_json};
 use denavit::report::{Pose, inspection_page, picture};
-use denavit::workflow::RobotFaults;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -25,6 +23,7 @@ Examples:
   denavit inspect tulip
   denavit inspect puma560 --svg puma560.svg
   denavit inspect puma560 --html puma560.html
+  denavit inspect robot.urdf --meshes robot_description --html robot.html
   denavit inspect scara --json")]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -38,6 +37,8 @@ pub(crate) struct Arguments {
     /// its equations; - is standard output
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
+    #[command(flatten)]
+    shapes: ShapesOption,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -50,14 +51,10 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let robot =
         read_model_with_effects(&arguments.model.model, effects).inspect_err(|failure| {
             let Failure::Work(error) = failure else { return };
-            let faults =
-                error.robot_faults().filter(|_| arguments.json).map(|faults| match faults {
-                    RobotFaults::Model(error) => faults_json(error),
-                    RobotFaults::Description(error) => faults_json(error),
-                });
-            if let Some(faults) = faults {
+            if let Some(faults) = error.robot_faults().filter(|_| arguments.json) {
                 // where nobody reads them, the failure says them, too
-                let _ = write_json(out, &faults).and_then(|()| Ok(out.flush()?));
+                let _ =
+                    write_json(out, &robot_faults_json(&faults)).and_then(|()| Ok(out.flush()?));
             }
         })?;
     if let Some(file) = &arguments.svg {
@@ -66,10 +63,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         write_whole(file, picture(&robot, &pose).as_bytes())?;
     }
     if let Some(file) = &arguments.html {
-        let version = ("denavit", env!("CARGO_PKG_VERSION").to_owned());
-        let facts = [version, ("model", format!("{}, content {:016x}", robot.name, robot.hash))];
-        let facts = facts.map(|(name, value)| Fact { name: name.to_owned(), value });
-        let page = inspection_page(&robot, facts.to_vec());
+        let shapes = arguments.shapes.read(&arguments.model.model)?;
+        let page = inspection_page(&robot, env!("CARGO_PKG_VERSION"), shapes.as_ref());
         let page = page.map_err(|error| CodeError::Lower(robot.name.clone(), error))?;
         write_whole(file, page.render().as_bytes())?;
     }

@@ -1,13 +1,15 @@
 //! Options that several commands have.
 
 use super::failure::Failure;
+use super::files::FILES;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use denavit::derive::Flavour;
 use denavit::function::{FunctionName, NoFunction};
 use denavit::model::Terms;
 use denavit::program::CodeError;
-use std::path::PathBuf;
+use denavit::workflow::Shapes;
+use std::path::{Path, PathBuf};
 
 /// The model that a command is about.
 #[derive(Debug, Args)]
@@ -23,6 +25,26 @@ pub(crate) struct EffectsOption {
     /// Folder of your own effects; without it the folder `effects` beside the model
     #[arg(long, value_name = "DIR")]
     pub(crate) effects: Option<PathBuf>,
+}
+
+/// What links look like on a page.
+#[derive(Debug, Args)]
+pub(crate) struct ShapesOption {
+    /// Show the shapes of this URDF on links of the same names; without it those of the model
+    /// itself, where that is a URDF
+    #[arg(long, value_name = "URDF", requires = "html")]
+    shapes: Option<PathBuf>,
+    /// Folder of their meshes (STL, OBJ), or of the package of `package://`; without it that of
+    /// the URDF
+    #[arg(long, value_name = "DIR", requires = "html")]
+    meshes: Option<PathBuf>,
+}
+
+impl ShapesOption {
+    /// The shapes that were asked for, or those of a model.
+    pub(crate) fn read(&self, model: &Path) -> Result<Option<Shapes>, Failure> {
+        Ok(FILES.shapes_of(model, self.shapes.as_deref(), self.meshes.as_deref())?)
+    }
 }
 
 /// Functions, given as a list of names.

@@ -4,16 +4,16 @@ use super::Answer;
 use super::failure::Failure;
 use super::files::{FILES, mapping};
 use super::logs::{log_source, note_logs, run_file};
+use super::options::ShapesOption;
 use super::outputs::{check_outputs, on_stdout, print_answer, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum, ValueHint};
-use denavit::report::answer::{drawn_run, run_json, run_page, run_text};
-use denavit::report::html::Fact;
+use denavit::report::answer::{ShownWithRun, drawn_run, run_json, run_page, run_text};
 use denavit::simulate::scenario::{RunScheme, Scenario};
 use denavit::simulate::{Log, Stop};
 use denavit::workflow::{LogBeside, LogSource, Logs, simulate};
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Simulate a scenario: a robot, its start, its control, the ground
@@ -60,6 +60,8 @@ pub(crate) struct Arguments {
     /// Which columns of that log are ours, as for `denavit identify`
     #[arg(long, value_name = "MAP.json", requires = "beside")]
     columns: Option<PathBuf>,
+    #[command(flatten)]
+    shapes: ShapesOption,
     /// The part of the run that is drawn
     #[arg(long, value_name = "FROM,TO", value_parser = window, requires = "svg")]
     window: Option<[f64; 2]>,
@@ -129,6 +131,7 @@ pub(super) fn run_kept(
     note_logs(&arguments.beside);
     check_outputs(&outputs)?;
     let beside = log_beside(arguments, &scenario)?;
+    let shapes = arguments.shapes.read(Path::new(""))?;
     let started = Instant::now();
     let progress = Progress::new();
     let run = simulate(&mut scenario, &mut progress.observer())?;
@@ -145,9 +148,8 @@ pub(super) fn run_kept(
         write_whole(path, drawn.as_bytes())?;
     }
     if let Some(path) = &arguments.html {
-        let version = env!("CARGO_PKG_VERSION").to_owned();
-        let facts = vec![Fact { name: "denavit".to_owned(), value: version }];
-        let page = run_page(&mut scenario, &run, &broken, beside.as_ref(), facts);
+        let with = ShownWithRun { log: beside.as_ref(), shapes: shapes.as_ref() };
+        let page = run_page(&mut scenario, &run, &broken, with, env!("CARGO_PKG_VERSION"));
         write_whole(path, page.render().as_bytes())?;
     }
     let shown = (is_answered, arguments.json);

@@ -42,6 +42,38 @@ COLUMNS = """() => [...document.querySelectorAll('.wide')].filter(box => box.que
   return [fits, head.parentNode.parentNode.caption?.textContent ?? box.ariaLabel, Math.max(...wide)];
 })"""
 
+# a table that scrolls says so until its end is seen, and one that does not says nothing
+HINTS = """async () => {
+  const next = () => new Promise(done => requestAnimationFrame(() => setTimeout(done, 0)));
+  const found = [];
+  for (const box of document.querySelectorAll('.wide')) {
+    if (!box.querySelector(':scope > table') || box.clientWidth === 0) continue;
+    const hint = box.previousElementSibling;
+    const scrolls = box.scrollWidth > box.clientWidth + 1;
+    const told = hint?.classList.contains('hint') && !hint.hidden && /more column/.test(hint.textContent);
+    const fades = getComputedStyle(box).maskImage !== 'none';
+    box.scrollLeft = box.scrollWidth;
+    await next();
+    const ends = getComputedStyle(box).maskImage === 'none';
+    box.scrollLeft = 0;
+    await next();
+    if (scrolls !== Boolean(told) || scrolls !== fades || !ends) found.push(box.ariaLabel);
+  }
+  return found;
+}"""
+
+# labels of a scene that are not whole within it, or lie over another
+LABELS = """figure => {
+  const frame = figure.querySelector('.stage').getBoundingClientRect();
+  const boxes = [...figure.querySelectorAll('.labels span')].filter(one => one.checkVisibility())
+    .map(one => [one.textContent, one.getBoundingClientRect()]);
+  const cut = boxes.filter(([, at]) => at.left < frame.left || at.right > frame.right + 0.5
+    || at.top < frame.top - 1 || at.bottom > frame.bottom + 1);
+  const over = boxes.filter(([, a], at) => boxes.slice(at + 1).some(([, b]) =>
+    a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 2 && b.top < a.bottom - 2));
+  return [...cut, ...over].map(([name]) => name);
+}"""
+
 # how many pixels of a canvas are not transparent, and a sum that changes where these do
 PIXELS = """canvas => {
   const copy = document.createElement('canvas');
@@ -132,6 +164,9 @@ class Checked:
                 self.expect(fits, f"{width} px: columns of `{name}` cannot be reached")
                 told = f"{width} px: a row of `{name}` is {tallest} px high"
                 self.expect(tallest <= TALLEST_ROW, told)
+            # the page of a fleet has no script
+            for name in page.evaluate(HINTS) if page.query_selector("body > script") else []:
+                self.expect(False, f"{width} px: `{name}` does not say whether it scrolls")
         if tabs:
             tabs[0].click()
         for tag in ("h1", "main", "h2"):
@@ -155,6 +190,10 @@ class Checked:
             values = chart.eval_on_selector_all(
                 ".u-value", "all => all.map(one => one.textContent).filter(text => /[0-9]/.test(text))")
             self.expect(values, f"{width} px: no value of {name} below the cursor")
+            marks = chart.eval_on_selector_all(
+                ".uplot", "all => all.map(one => Number(one.dataset.marks))")
+            told = f"{width} px: a scale of {name} has {min(marks)} marks"
+            self.expect(min(marks) > 1, told)
 
     def zoom(self, page):
         """Charts of a group show the same part."""
@@ -190,6 +229,17 @@ class Checked:
             self.expect(0.005 * total < seen < total, f"{width} px: the robot is not drawn")
             sums.append(value)
         self.expect(len(set(sums)) == 3, f"{width} px: the slider does not move the robot")
+        for name in figure.evaluate(LABELS):
+            self.expect(False, f"{width} px: the label {name} is cut, or lies over another")
+        shapes = figure.query_selector(".marks input[value=shapes]")
+        if shapes:
+            shapes.click()
+            page.wait_for_timeout(50)
+            told = f"{width} px: shapes of links are not drawn in place of the rows"
+            self.expect(canvas.evaluate(PIXELS)[1] != sums[2], told)
+            shapes.click()
+            page.wait_for_timeout(50)
+            self.expect(canvas.evaluate(PIXELS)[1] == sums[2], told)
         if not button:
             self.pointed(page, figure, canvas, width)
             return

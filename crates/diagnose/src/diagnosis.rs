@@ -105,6 +105,8 @@ pub struct Diagnosis {
     pub leftovers: Vec<Leftover>,
     /// What is left at joints that no effect explains.
     pub structures: Vec<Structure>,
+    /// Whether joints leave most of held-out logs where their drives turn around or rest.
+    pub is_left_at_reversals: bool,
     /// How they were found.
     pub steps: Vec<Step>,
     /// Gaps of the logs that were fitted.
@@ -251,6 +253,7 @@ impl Told<'_, '_> {
             visible,
             leftovers,
             structures,
+            is_left_at_reversals: false,
             curves: curves(
                 data.held_out,
                 [

@@ -56,7 +56,9 @@ pub(super) fn judge(
     }
     let (verdict, mut reasons) = said(diagnosis, setting);
     reasons.extend(doubts(diagnosis, setting, found));
-    reasons.extend(untold(setting.data.held_out, &after.residual.held_out));
+    let untold = untold(setting.data.held_out, &after.residual.held_out);
+    diagnosis.is_left_at_reversals = !untold.is_empty();
+    reasons.extend(untold);
     (diagnosis.verdict, diagnosis.reasons) = (verdict, reasons);
     if found.is_stopped {
         diagnosis.verdict = Verdict::CannotTell;

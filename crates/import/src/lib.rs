@@ -6,12 +6,15 @@
 //! 3. `layout`: the tree to rows, as few as can be
 //! 4. `model`: rows to the text of a model file
 //!
+//! [`shapes`] are what links look like, for pictures.
+//!
 //! Nothing is computed in floating point. What a model file cannot say exactly (a tensor in axes
 //! that are turned by 0.3) is rounded at 17 digits, and reported.
 
 mod body;
 mod chain;
 mod contact;
+mod drawn;
 mod error;
 mod exact;
 mod export;
@@ -29,6 +32,7 @@ mod tree;
 mod urdf;
 mod xml;
 
+pub use drawn::{DrawnForm, DrawnShape, shapes};
 pub use error::{Error, ErrorKind};
 pub use export::{Exported, Format, export, export_into};
 pub use fault::Cause;

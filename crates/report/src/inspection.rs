@@ -8,6 +8,7 @@ use denavit_codegen::derive::{EquationOptions, EquationPart, MotionEquations};
 use denavit_codegen::emit::latex::{Extent, Notation, write_expressions};
 use denavit_codegen::model::{Base, Convention, Robot};
 use denavit_codegen::program::LowerError;
+use denavit_workflow::Shapes;
 
 /// Robots of more joints have equations that nobody reads.
 const MOST_JOINTS: usize = 4;
@@ -15,20 +16,31 @@ const MOST_JOINTS: usize = 4;
 /// Equations of more summands are not set.
 const MOST_TERMS: usize = 300;
 
-/// A model as a page; `facts` say what it was made of.
+/// A model as a page, with the shapes of its links if there are any; `version` is that of the
+/// program.
 ///
 /// # Errors
 /// If a number of the model is one that no computer arithmetic holds.
-pub fn inspection_page(robot: &Robot, facts: Vec<Fact>) -> Result<Page, LowerError> {
-    let scene = JointedRobot::new(robot)?.telling(|link| model_row(robot, link));
+pub fn inspection_page(
+    robot: &Robot,
+    version: &str,
+    shapes: Option<&Shapes>,
+) -> Result<Page, LowerError> {
+    let mut scene = JointedRobot::new(robot)?.telling(|link| model_row(robot, link));
+    let mut remarks = Vec::new();
+    if let Some(shapes) = shapes {
+        (scene, remarks) = scene.looking(shapes);
+    }
     let name = format!("{} in three dimensions", robot.name);
     let caption = "Drag to turn, scroll to come closer. Point at a link to read its row. Axes of \
                    frames: x red, y green, z blue; joints turn about the z axes."
         .to_owned();
+    let shown = Part::Replay(scene.with_sliders([name, caption]));
+    let remarks = remarks.into_iter().map(|text| Part::Paragraph { text });
     let mut sections = vec![
         Section {
             heading: "Robot".to_owned(),
-            parts: vec![Part::Replay(scene.with_sliders([name, caption]))],
+            parts: std::iter::once(shown).chain(remarks).collect(),
         },
         Section { heading: "Denavit-Hartenberg table".to_owned(), parts: rows(robot) },
     ];
@@ -42,6 +54,11 @@ pub fn inspection_page(robot: &Robot, facts: Vec<Fact>) -> Result<Page, LowerErr
         let parts = robot.assumptions.iter().map(|text| Part::Paragraph { text: text.clone() });
         sections.push(Section { heading: "Assumptions".to_owned(), parts: parts.collect() });
     }
+    let facts = [
+        ("denavit", version.to_owned()),
+        ("model", format!("{}, content {:016x}", robot.name, robot.hash)),
+    ];
+    let facts = facts.map(|(name, value)| Fact { name: name.to_owned(), value });
     Ok(Page {
         watches: false,
         title: robot.name.replace('_', " "),

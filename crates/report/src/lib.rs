@@ -35,6 +35,7 @@ mod pose;
 mod quaternion;
 mod run;
 mod scene;
+mod shapes;
 mod space;
 mod svg;
 pub mod symbolic;

@@ -1,6 +1,6 @@
 //! Use cases as single calls: a robot and data in, an answer out.
 //!
-//! - [`Files`]: reads robots ([`RobotFile`]) and what they refer to
+//! - [`Files`]: reads robots ([`RobotFile`]) and what they refer to, their [`Shapes`] too
 //! - [`Logs`]: which logs, and how they are read; a [`LogSource`] is a file, or in memory
 //! - [`identify()`]: parameters from logs, by [`IdentifyOptions`]; [`identify_two_stage`] and
 //!   [`identify_statics`] for springs, and for measurements at rest
@@ -17,6 +17,19 @@
 //! - [`Error`]: why there is no answer, with its kind and hints
 //!
 //! Nothing here prints, and no option is taken from anywhere but the arguments of a call.
+//!
+//! ```
+//! use denavit_workflow::{Files, Silent, simulate};
+//! use std::path::Path;
+//!
+//! // a path, or the name of a shipped scenario
+//! let mut scenario = Files::default().scenario(Path::new("double_pendulum"))?;
+//! let run = simulate(&mut scenario, &mut Silent)?;
+//! assert!(scenario.broken(&run).is_empty(), "every law that is audited holds");
+//! let t = run.log.column("t").expect("times");
+//! println!("{} rows, the last at {} s", t.len(), t[t.len() - 1]);
+//! # Ok::<(), denavit_workflow::Error>(())
+//! ```
 
 mod beside;
 mod diagnose;
@@ -31,10 +44,12 @@ mod mistaken;
 mod observer;
 mod robot_file;
 mod scenario;
+mod shapes;
 mod simulate;
 mod walk;
 
 pub use beside::LogBeside;
+pub use denavit_import::{DrawnForm, DrawnShape};
 pub use diagnose::{Completed, DiagnoseOptions, Diagnosed, NamedEffect, diagnose};
 pub use error::{Error, ErrorKind, Hint, RobotFaults};
 pub use excite::{check_excitation, excite};
@@ -49,6 +64,7 @@ pub use logs::{LogSource, Logs};
 pub use mistaken::{FileKind, Mistaken};
 pub use observer::{Observer, Progress, Silent, Stage};
 pub use robot_file::{EffectUse, RobotFile, WholeRobot};
+pub use shapes::{LookOfLink, Shapes};
 pub use simulate::simulate;
 pub use walk::{
     Designed, Gait, GaitBasin, GaitCurves, GaitQuantity, JudgeOptions, Judged, PushQuestion,

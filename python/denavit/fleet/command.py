@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 import webbrowser
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from .._progress import ProgressLine
 from ..studies.here import Runner, in_process, in_processes
 from ..studies.on_ray import connected, on_ray, ray_package
 from .engine import Options
@@ -88,19 +88,18 @@ def _judged(
 ) -> int:
     from . import judge
 
-    def show(night: str, what: str, done: int, count: int) -> None:
-        if sys.stderr.isatty():
-            print(f"\r{night}: {what} {done} of {count}   ", end="", file=sys.stderr, flush=True)
+    with ProgressLine() as line, _runner(given) as runner:
 
-    with _runner(given) as runner:
+        def show(night: str, what: str, done: int, count: int) -> None:
+            line.show(f"{night}: {what} {done} of {count}")
+
         fleet = judge(logs, models, out, runner=runner, options=options, progress=show)
-    if sys.stderr.isatty():
-        print(file=sys.stderr)
     last = [one for one in fleet.outcomes if one.night == fleet.nights[-1]]
     alarms = [one for one in last if one.is_alarm]
     silent = [one for one in last if one.reason]
+    count = "1 alarm" if len(alarms) == 1 else f"{len(alarms)} alarms"
     print(f"{len(fleet.robots)} robots, {len(fleet.nights)} nights")
-    print(f"{fleet.nights[-1]}: {len(alarms)} alarms, {len(silent)} without an answer")
+    print(f"{fleet.nights[-1]}: {count}, {len(silent)} without an answer")
     for one in sorted(alarms, key=lambda one: (one.judged.p if one.judged else 1.0, one.robot)):
         found = one.diagnosed or {}
         name = f"{found['effect']} at {found['joint']}" if found.get("effect") else "nothing named"
@@ -119,16 +118,15 @@ def _example(given: argparse.Namespace) -> int:
     if given.judges and given.ray is not None:
         ray_package()  # before anything is written
 
-    def show(done: int, count: int) -> None:
-        if sys.stderr.isatty():
-            print(f"\rsimulated {done} of {count}   ", end="", file=sys.stderr, flush=True)
+    with ProgressLine() as line:
 
-    write_example(
-        given.output, robots=given.robots, nights=given.nights, changed=given.changed,
-        since=given.since, seed=given.seed, progress=show,
-    )  # fmt: skip
-    if sys.stderr.isatty():
-        print(file=sys.stderr)
+        def show(done: int, count: int) -> None:
+            line.show(f"simulated {done} of {count}")
+
+        write_example(
+            given.output, robots=given.robots, nights=given.nights, changed=given.changed,
+            since=given.since, seed=given.seed, progress=show,
+        )  # fmt: skip
     logs, model = given.output / "logs", given.output / "arm.json"
     print(f"{logs}: {given.robots} robots, {given.nights} nights; {model}")
     if not given.judges:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from html import escape
 from urllib.parse import quote
 
@@ -15,6 +15,15 @@ from .tables import report_name
 
 MOST_WITH_CURVES = 200
 """Robots with curves: a page of more of them is slow to open. Tables have them all."""
+
+VERDICTS = {
+    "nothing_missing": "nothing is missing",
+    "explained": "explained",
+    "partly_explained": "partly explained",
+    "unexplained": "not explained",
+    "cannot_tell": "the logs cannot tell",
+}
+"""Verdicts of a diagnosis in words."""
 
 STYLE = """
 :root{color-scheme:light dark;--ink:#1b1f24;--quiet:#59636e;--rule:#d8dde3;--ground:#fff;
@@ -42,7 +51,7 @@ circle.changed{fill:var(--bad)}path.changed{stroke:var(--bad)}
 .wide{overflow-x:auto}table{border-collapse:collapse;font-size:.9rem}
 th,td{padding:.2rem .7rem;border-bottom:1px solid var(--rule);text-align:left;white-space:nowrap}
 tr>:first-child{position:sticky;left:0;background:var(--ground)}
-td.number{text-align:right;font-variant-numeric:tabular-nums}
+.number{text-align:right;font-variant-numeric:tabular-nums}tbody th{font-weight:500}
 :focus-visible{outline:2px solid var(--accent)}
 @media(max-width:40rem){body{margin:1rem auto;padding:0 .8rem}}
 """.strip()
@@ -57,19 +66,21 @@ def page(fleet: Fleet, drifts: Sequence[Drift]) -> str:
     style = base64.b64encode(hashlib.sha256(STYLE.encode()).digest()).decode()
     allowed = f"default-src 'none'; style-src 'sha256-{style}'"
     kind = "verdict bad" if alarmed else "verdict"
-    said = f"{escape(last)}: {len(alarmed)} alarms among {len(robots)} robots"
+    among = _count(len(robots), "robot")
+    said = f"{escape(last)}: {_count(len(alarmed), 'alarm')} among {among}"
     if silent:
-        said += f"; {len(silent)} have no answer"
+        said += f"; {len(silent)} {'has' if len(silent) == 1 else 'have'} no answer"
     shown = robots[:MOST_WITH_CURVES]
     more = len(robots) - len(shown)
-    rest = f"<p>{more} more robots are in the table below.</p>" if more else ""
+    rest = f"<p>{_count(more, 'more robot')} {'is' if more == 1 else 'are'} in the table below.</p>"
+    rest = rest if more else ""
     sections = "".join(_section(one, fleet) for one in shown)
     return f"""<!doctype html>
 <html lang="en" data-ready="yes" data-charts="yes"><head><meta charset="utf-8">
 <meta http-equiv="Content-Security-Policy" content="{allowed}">
 <meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Fleet: {len(robots)} robots</title><style>{STYLE}</style></head><body><main>
-<h1>Fleet: {len(robots)} robots, {len(fleet.nights)} nights</h1>
+<title>Fleet: {among}</title><style>{STYLE}</style></head><body><main>
+<h1>Fleet: {among}, {_count(len(fleet.nights), "night")}</h1>
 <p class="{kind}">{said}.</p>
 <p>Among the alarms of a night, a share of at most {100 * fleet.rate:g} % is expected to be false.
 That is the false discovery rate over the whole fleet. A robot is judged by its own earlier nights;
@@ -130,14 +141,19 @@ def _nights(fleet: Fleet) -> str:
         )
         first = sum(one.is_first for one in own)
         rows.append([night, str(len(own)), str(first), str(alarms), str(silent)])
-    return _table(["night", "robots", "without a history", "alarms", "no answer"], rows)
+    numbers = ("robots", "without a history", "alarms", "no answer")
+    return _table(["night", *numbers], rows, numbers)
 
 
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    cells = "".join(f"<th>{escape(one)}</th>" for one in head)
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]], numbers: Collection[str]) -> str:
+    """A table whose columns of numbers stand on the right."""
+    kinds = [' class="number"' if one in numbers else "" for one in head]
+    cells = "".join(
+        f'<th scope="col"{kind}>{escape(one)}</th>' for one, kind in zip(head, kinds)
+    )
     body = "".join(
-        f"<tr><td>{escape(first)}</td>"
-        + "".join(f'<td class="number">{escape(one)}</td>' for one in rest)
+        f'<tr><th scope="row">{escape(first)}</th>'
+        + "".join(f"<td{kind}>{escape(one)}</td>" for one, kind in zip(rest, kinds[1:]))
         + "</tr>"
         for first, *rest in rows
     )
@@ -162,14 +178,15 @@ def _lines(robot: _Robot, fleet: Fleet) -> list[str]:
         lines.append(f"Alarm since {escape(first_alarm.night)}.")
     if last.is_alarm and last.diagnosed and last.diagnosed["named"]:
         odds = last.diagnosed["log10_odds"]
-        named = "; ".join(escape(one) for one in last.diagnosed["named"])
-        line = f"<b>{named}</b> (odds 10^{odds:.0f})."
+        named = "; ".join(escape(_named(one)) for one in last.diagnosed["named"])
+        line = f"<b>{named}</b> (odds 10<sup>{odds:.0f}</sup>)."
         if last.diagnosed["rivals"]:
-            line += " Or " + escape(", ".join(last.diagnosed["rivals"])) + "."
+            rivals = (_words(one) for one in last.diagnosed["rivals"])
+            line += f" Or {escape(', '.join(rivals))}."
         lines.append(line)
     elif last.is_alarm:
-        verdict = (last.diagnosed or {}).get("verdict")
-        lines.append(f"Nothing is named{f': {escape(verdict)}' if verdict else ''}.")
+        verdict = VERDICTS.get((last.diagnosed or {}).get("verdict") or "")
+        lines.append(f"Nothing is named{f': {verdict}' if verdict else ''}.")
     if last.diagnosed and last.diagnosed["before"] is not None:
         before, after, floor = (100 * last.diagnosed[key] for key in ("before", "after", "floor"))
         named = f"{before:.2f} %, {after:.2f} % with what is named"
@@ -225,7 +242,25 @@ def _list(robots: Sequence[_Robot]) -> str:
             one.name, one.state[2], one.last.night,
             "" if judged is None else f"{judged.p:.2g}",
             "" if judged is None else f"{judged.adjusted:.2g}",
-            found.get("verdict") or "", found.get("effect") or "", found.get("joint") or "",
+            VERDICTS.get(found.get("verdict") or "", ""), _words(found.get("effect") or ""),
+            found.get("joint") or "",
         ])  # fmt: skip
-    head = ["robot", "state", "last night", "p", "false discovery rate", "verdict", "effect", "at"]
-    return _table(head, rows)
+    numbers = ("p", "false discovery rate")
+    head = ["robot", "state", "last night", *numbers, "diagnosis", "effect", "at"]
+    return _table(head, rows, numbers)
+
+
+def _words(name: str) -> str:
+    """A name of the catalogue, at a joint perhaps, as words."""
+    effect, at, joint = name.partition(" at ")
+    return effect.replace("_", " ") + at + joint
+
+
+def _named(told: str) -> str:
+    """An effect with its values."""
+    name, colon, values = told.partition(": ")
+    return _words(name) + colon + values.replace("+-", "\u00b1")
+
+
+def _count(count: int, word: str) -> str:
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"

@@ -15,7 +15,7 @@ pyarrow; ``on_ray`` needs ray.
 from . import ready
 from .cases import Case, Row, rows
 from .here import computed, run
-from .parts import StudyError, merge, missing, read_part
+from .parts import StudyError, extent, merge, missing, read_part
 from .study import Study, read_study
 
 __all__ = [
@@ -24,6 +24,7 @@ __all__ = [
     "Study",
     "StudyError",
     "computed",
+    "extent",
     "merge",
     "missing",
     "read_part",

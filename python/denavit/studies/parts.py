@@ -168,6 +168,7 @@ def write_rows(path: Path, study: Study, start: int, stop: int, rows: list[Row])
     pa = arrow()
     table = pa.Table.from_pylist([dict(row) for row in rows], schema=schema(study))
     said = {"study": study.key, "name": study.name, "start": str(start), "stop": str(stop)}
+    said["count"] = str(study.count)
     write_table(path, table.replace_schema_metadata(said))
 
 
@@ -189,6 +190,15 @@ def _said(path: Path) -> tuple[str, int, int]:
         return said[b"study"].decode(), int(said[b"start"]), int(said[b"stop"])
     except (pa.ArrowException, OSError, KeyError, ValueError):
         raise wrong(path, "is no part of a study") from None
+
+
+def extent(path: str | Path) -> tuple[int, int, int | None]:
+    """The first index of a part, the one behind its last, and how many its study has: none where a
+    part of an earlier version does not say.
+    """
+    _, start, stop = _said(Path(path))
+    count = (arrow().parquet.read_schema(path).metadata or {}).get(b"count", b"").decode()
+    return start, stop, int(count) if count.isdigit() else None
 
 
 def read_part(path: str | Path) -> pa.Table:

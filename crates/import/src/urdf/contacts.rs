@@ -59,7 +59,7 @@ fn shapes(
     found
 }
 
-fn solid(geometry: Element<'_>, faults: &mut Faults) -> Option<Solid> {
+pub(super) fn solid(geometry: Element<'_>, faults: &mut Faults) -> Option<Solid> {
     let half = |value: &Rational| value / integer(2);
     if let Some(shape) = geometry.first("box") {
         let given = needed(shape, "size", faults)?;
@@ -88,7 +88,7 @@ fn of_mesh(mesh: Element<'_>, include: &mut Include<'_>, faults: &mut Faults) ->
 }
 
 /// An attribute that a shape cannot be without.
-fn needed<'s>(shape: Element<'s>, name: &str, faults: &mut Faults) -> Option<Text<'s>> {
+pub(super) fn needed<'s>(shape: Element<'s>, name: &str, faults: &mut Faults) -> Option<Text<'s>> {
     let found = shape.get(name);
     if found.is_none() {
         let said = format!("this {} has no `{name}`", clip(shape.name()));

@@ -2,9 +2,11 @@
 
 mod contacts;
 mod joint;
+mod looks;
 mod raw;
 mod values;
 
+pub(crate) use looks::looks;
 pub(crate) use values::{number, numbers, wrong};
 
 use crate::Include;

@@ -1,6 +1,7 @@
 //! A diagnosis as text.
 
 use super::diagnosis_folder::DiagnosisFolder;
+use crate::diagnosis::closes;
 use crate::{Align, Table, paragraph, percent, short, verdict_paragraph};
 use denavit_diagnose::{
     Candidate, EffectValue, FoundEffect, Gap, Gaps, MotionGap, MotionGaps, Visible,
@@ -124,13 +125,14 @@ fn effect(out: &mut String, shown: &Diagnosed, one: &FoundEffect) -> fmt::Result
     let doubt = if one.is_named { "" } else { "unnamed, nearest: " };
     writeln!(
         out,
-        "\n{doubt}{} ({}) at {}: odds {}, {} of the torque, closes {}",
+        "\n{doubt}{} ({}) at {}: odds {}, {} of the torque, {}",
         own.title,
         own.effect,
         own.at,
         odds(one.log_odds),
         percent(one.size),
-        percent(one.share)
+        closes(one)
+            .map_or_else(|| "closes nothing alone".to_owned(), |share| format!("closes {share}"))
     )?;
     one.parameters.iter().try_for_each(|one| writeln!(out, "  {}", value(one)))?;
     for other in &one.alternatives {

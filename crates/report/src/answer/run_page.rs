@@ -5,18 +5,29 @@ use crate::html::{Cell, Fact, Grade, Heading, HtmlTable, Page, Part, Row, Sectio
 use crate::run::{beside_parts, replay, run_charts};
 use denavit_simulate::scenario::Scenario;
 use denavit_simulate::{EventKind, Run, Stop};
-use denavit_workflow::LogBeside;
+use denavit_workflow::{LogBeside, Shapes};
+
+/// What a page shows with a run.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ShownWithRun<'a> {
+    /// A log of the same robot.
+    pub log: Option<&'a LogBeside>,
+    /// What its links look like.
+    pub shapes: Option<&'a Shapes>,
+}
 
 /// A run on one page: played back, with its curves and its audit; `broken` are the tolerances that
-/// it broke (law, found, allowed), `beside` is a log that is shown with it.
+/// it broke (law, found, allowed), `version` is that of the program.
 pub fn run_page(
     scenario: &mut Scenario,
     run: &Run,
     broken: &[(&'static str, f64, f64)],
-    beside: Option<&LogBeside>,
-    facts: Vec<Fact>,
+    with: ShownWithRun<'_>,
+    version: &str,
 ) -> Page {
-    let motion = replay(scenario.plant.as_mut(), run, beside).map(Part::Replay);
+    let beside = with.log;
+    let (motion, remarks) = replay(scenario.plant.as_mut(), run, with);
+    let remarks = remarks.into_iter().map(|text| Part::Paragraph { text });
     let model = scenario.plant.model().clone();
     let charts: Vec<Part> =
         run_charts(&model, &run.log, beside).into_iter().map(Part::Chart).collect();
@@ -26,19 +37,23 @@ pub fn run_page(
             sections.push(Section { heading: heading.to_owned(), parts });
         }
     };
-    section("Motion", motion.into_iter().collect());
+    section("Motion", motion.map(Part::Replay).into_iter().chain(remarks).collect());
     let compared = beside.map(|beside| beside_parts(&model, &run.log, beside));
     section("Measured beside simulated", compared.unwrap_or_default());
     section("Curves", charts);
     section("Audit", vec![Part::Table(audit(scenario, run, broken))]);
-    let given = [("model", model.name.clone()), ("scheme", scheme_text(scenario))];
+    let given = [
+        ("denavit", version.to_owned()),
+        ("model", model.name.clone()),
+        ("scheme", scheme_text(scenario)),
+    ];
     let given = given.map(|(name, value)| Fact { name: name.to_owned(), value });
     Page {
         watches: false,
         title: scenario.name.replace('_', " "),
         verdict: Some(verdict(run, broken)),
         lead: scenario.description.clone(),
-        facts: facts.into_iter().chain(given).collect(),
+        facts: given.to_vec(),
         sections,
     }
 }

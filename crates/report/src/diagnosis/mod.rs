@@ -5,11 +5,12 @@ mod rivals;
 mod robot;
 mod unseen;
 mod windows;
+mod words;
 
 use super::effects::formulas;
 use super::html::{
-    Cell, Chart, ChartCurve, Fact, Grade, Heading, HtmlTable, Look, Page, Panel, Part, Row,
-    Section, VerdictLine, mathml,
+    Cell, Chart, ChartCurve, Fact, Heading, HtmlTable, Look, Page, Panel, Part, Row, Section,
+    mathml,
 };
 use super::jointed::JointedRobot;
 use super::run::diagnosis_picture;
@@ -17,21 +18,20 @@ use super::{percent, short};
 use denavit_codegen::effect::{Effect, Law};
 use denavit_codegen::model::Robot;
 use denavit_diagnose::{
-    Candidate, Curve, Diagnosis, FoundEffect, Gap, Gaps, MotionGap, MotionGaps, Step, Verdict,
-    Where,
+    Candidate, Curve, Diagnosis, FoundEffect, Gap, Gaps, MotionGap, MotionGaps, Step, Where,
 };
 use law::law_chart;
 use std::f64::consts::LN_10;
 use windows::{windows, windows_table};
+pub(crate) use words::closes;
+pub use words::verdict_paragraph;
+use words::{reasons, verdict};
 
 /// Joints whose torques are drawn, at most.
 const DRAWN: usize = 3;
 
 /// The share of all that is left from which a joint is drawn.
 const LEAST: f64 = 0.02;
-
-/// The share of the gap from which an effect is said to close it.
-const LEAST_SHARE: f64 = 0.001;
 
 /// What a page about a diagnosis says.
 pub struct DiagnosisPage<'a> {
@@ -63,63 +63,6 @@ pub struct DiagnosisSource<'a> {
     pub effects: &'a [Effect],
     /// What was found.
     pub found: &'a Diagnosis,
-}
-
-/// The answer in a sentence or two: the verdict, and what was found.
-fn verdict(found: &Diagnosis, candidates: &[Candidate]) -> VerdictLine {
-    let grade = match found.verdict {
-        Verdict::NothingMissing | Verdict::Explained => Grade::Good,
-        Verdict::PartlyExplained => Grade::Fair,
-        Verdict::Unexplained | Verdict::CannotTell => Grade::Bad,
-    };
-    VerdictLine { grade, text: verdict_sentence(found, candidates) }
-}
-
-fn verdict_sentence(found: &Diagnosis, candidates: &[Candidate]) -> String {
-    let mut text = match found.verdict {
-        Verdict::NothingMissing => "Nothing is missing: what is left is noise.",
-        Verdict::Explained => "What the model lacks is named, and explains the disagreement.",
-        Verdict::PartlyExplained => "A part of what the model lacks is named.",
-        Verdict::Unexplained => "The model lacks something that is not in the catalogue.",
-        Verdict::CannotTell => "The logs do not tell what the model lacks.",
-    }
-    .to_owned();
-    for (is_named, word) in [(true, "Found"), (false, "Nearest to what has no name")] {
-        let all = found.effects.iter().filter(|one| one.is_named == is_named);
-        let names = all.map(|one| &candidates[one.candidate]);
-        let names: Vec<String> = names.map(|own| format!("{} at {}", own.title, own.at)).collect();
-        if !names.is_empty() {
-            text += &format!(" {word}: {}.", names.join("; "));
-        }
-    }
-    text
-}
-
-/// The answer in a paragraph: verdict, what was found, the gap before and after, reasons.
-pub fn verdict_paragraph(found: &Diagnosis, candidates: &[Candidate]) -> String {
-    format!("{} {}", verdict_sentence(found, candidates), reasons(found))
-}
-
-/// The gap before and after, and what speaks for the verdict.
-fn reasons(found: &Diagnosis) -> String {
-    let Gaps { before, after, floor } = &found.held_out;
-    let mut text = format!(
-        "On held-out logs the gap of the torques was {}, with what was found it is {}, and noise \
-         alone leaves {}",
-        percent(before.all),
-        percent(after.all),
-        percent(floor.all)
-    );
-    if let Some(share) = found.share_closed().filter(|_| !found.effects.is_empty()) {
-        text += &format!(": {} of what can be explained is closed", percent(share));
-    }
-    text.push('.');
-    for reason in &found.reasons {
-        let mut letters = reason.chars();
-        let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
-        text += &format!(" {first}{}.", letters.as_str());
-    }
-    text
 }
 
 /// Torques of one log, and what both models leave of them.
@@ -305,10 +248,10 @@ impl DiagnosisPage<'_> {
     fn term(&self, one: &FoundEffect) -> Vec<Part> {
         let own = &self.candidates[one.candidate];
         let doubt = if one.is_named { "New" } else { "Nearest to something without a name" };
-        let closes = match one.share > LEAST_SHARE {
-            true => format!("It closes {} of the gap.", percent(one.share)),
-            false => "Without it the other terms, estimated again, leave no more of the held-out \
-                      logs: what speaks for it are its odds."
+        let closes = match closes(one) {
+            Some(share) => format!("It closes {share} of the gap."),
+            None => "Without it the other terms, estimated again, leave no more of the held-out \
+                     logs: what speaks for it are its odds."
                 .to_owned(),
         };
         let (title, at, odds) = (&own.title, &own.at, odds(one.log_odds));

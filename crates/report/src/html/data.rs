@@ -23,6 +23,21 @@ pub(super) fn embedded(data: &impl Serialize) -> String {
     safe
 }
 
+/// Bytes as text (RFC 4648, base 64).
+pub(crate) fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for three in bytes.chunks(3) {
+        let byte = |at: usize| u32::from(three.get(at).copied().unwrap_or(0));
+        let all = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for place in 0..4 {
+            let letter = LETTERS[(all >> (18 - 6 * place) & 63) as usize];
+            text.push(if place > three.len() { '=' } else { char::from(letter) });
+        }
+    }
+    text
+}
+
 /// A number in few digits; none where it is no number.
 fn rounded(value: f64, digits: usize) -> Option<f64> {
     let text = format!("{value:.*e}", digits.saturating_sub(1));
@@ -78,6 +93,13 @@ mod tests {
         assert_eq!(text, r#"["\u003c/script\u003e\u003c!--","\u2028\u0026"]"#);
         let back: [String; 2] = serde_json::from_str(&text).expect("JSON");
         assert_eq!(back[0], "</script><!--");
+    }
+
+    #[test]
+    fn bytes_are_as_the_standard_has_them() {
+        let words = ["", "f", "fo", "foo", "foob", "fooba", "foobar"];
+        let texts = words.map(|word| base64(word.as_bytes()));
+        assert_eq!(texts, ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"]);
     }
 
     #[test]

@@ -14,7 +14,7 @@ mod table;
 mod units;
 
 pub use chart::{Chart, ChartCurve, Look, Panel};
-pub(crate) use data::{Brief, with_decimals, with_digits};
+pub(crate) use data::{Brief, base64, with_decimals, with_digits};
 pub use formula::{FormulaError, mathml};
 pub use replay::{Mark, Replay};
 pub(crate) use replay::{Scene, SceneMark, Slider};

@@ -91,6 +91,11 @@ impl SceneMark {
         Self { key: "frames", word: "frames of the links".to_owned(), is_toggled: true }
     }
 
+    /// The shapes of the links.
+    pub(crate) fn shapes() -> Self {
+        Self { key: "shapes", word: "shapes of the links".to_owned(), is_toggled: true }
+    }
+
     /// The centre of mass.
     pub(crate) fn center_of_mass() -> Self {
         Mark::CenterOfMass.named()
@@ -125,16 +130,16 @@ struct ReplayEvent {
 }
 
 impl Replay {
-    /// A run with what is shown beside it, another motion if there is one, and what happened;
+    /// A run with what is shown beside it, other things of its script, and what happened;
     /// `data` is what the script draws.
     pub(crate) fn new(
         [name, caption]: [String; 2],
         marks: &[Mark],
-        ghost: Option<SceneMark>,
+        others: impl IntoIterator<Item = SceneMark>,
         events: impl Iterator<Item = (f64, String)>,
         data: &impl Serialize,
     ) -> Self {
-        let marks = marks.iter().map(|mark| mark.named()).chain(ghost).collect();
+        let marks = marks.iter().map(|mark| mark.named()).chain(others).collect();
         let scene = Scene { name, caption, marks, has_time: true, ..Scene::default() };
         Self {
             events: events.map(|(t, text)| ReplayEvent { at: format!("{t:.4} s"), text }).collect(),

@@ -99,21 +99,42 @@ pub(super) fn motion(forward: &Forward) -> impl Iterator<Item = Chart> + '_ {
     })
 }
 
-/// Each parameter against its end, in its own standard errors.
+/// Parameters with a colour of their own: a palette has no more that everybody tells apart.
+const COLOURED: usize = 6;
+
+/// Each parameter against its end, in its own standard errors: those that come last in colour, the
+/// others in grey.
 pub(super) fn convergence(parameters: &[IdentifiedParameter], points: &[Convergence]) -> Chart {
     let curve = |(place, one): (usize, &IdentifiedParameter)| {
         let std = one.std.filter(|std| *std > 0.0)?;
         let off =
             |point: &Convergence| ((point.values[place] - one.value) / std).clamp(-SHOWN, SHOWN);
-        let values = points.iter().map(off).collect();
+        let values: Vec<f64> = points.iter().map(off).collect();
         Some(ChartCurve::new(&one.name, Look::Palette, values))
     };
-    let curves = parameters.iter().enumerate().filter_map(curve).collect();
+    let mut curves: Vec<ChartCurve> = parameters.iter().enumerate().filter_map(curve).collect();
+    let mut others = String::new();
+    if curves.len() > COLOURED {
+        // how far a parameter still was in the second half of the data
+        let late = |one: &ChartCurve| {
+            let half = one.values.iter().skip(one.values.len() / 2);
+            half.fold(
+                0.0,
+                |most: f64, off| if off.is_finite() { most.max(off.abs()) } else { most },
+            )
+        };
+        curves.sort_by(|a, b| late(b).total_cmp(&late(a)));
+        curves[COLOURED..].iter_mut().for_each(|one| one.look = Look::Residual);
+        others = format!(
+            " In colour are the {COLOURED} that were still furthest away in the second half; the \
+             others are grey. A curve stands out where the pointer is near it, or on its name."
+        );
+    }
     Chart {
         name: "Parameters as data come in".to_owned(),
         caption: format!(
             "Estimates of the data up to a time, with the weights of the end; what is more than \
-             {SHOWN} standard errors off is drawn there."
+             {SHOWN} standard errors off is drawn there.{others}"
         ),
         group: "convergence",
         over: ["time [s]", "time of measurement [s]"],

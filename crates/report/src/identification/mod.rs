@@ -204,8 +204,9 @@ pub(super) fn residuals(train: &Validation, held_out: Option<&Validation>) -> Se
         ];
         Row { cells, is_marked: false }
     });
-    let caption = "What is left of the torques [N m, N], after the filter. Residuals that are \
-                   noise alone are not correlated.";
+    let caption = "What is left of the torques [N m, N], after the filter. The filter makes the \
+                   noise of neighbouring samples alike: also of a good fit this correlation is \
+                   near 1 where samples are much faster than the filter.";
     let table = HtmlTable { caption: caption.to_owned(), columns, rows: rows.collect() };
     Section { heading: "Residuals".to_owned(), parts: vec![Part::Table(table)] }
 }

@@ -4,6 +4,7 @@ use crate::html::Slider;
 use crate::outline::round_step;
 use crate::pose::Pose;
 use crate::quaternion::pose_of;
+use crate::shapes::SceneShape;
 use crate::space::{Transform, Vec3, extent, scale, sub};
 use crate::values::Values;
 use denavit_codegen::arena::Handle;
@@ -34,6 +35,10 @@ pub(super) struct Geometry {
     eye: Option<Vec3>,
     /// The axis of all joints, where they are parallel: from there they are seen to turn.
     look: Option<Vec3>,
+    /// Shapes of links in place of its rows.
+    pub(super) shapes: Vec<SceneShape>,
+    /// Whether nothing of it is missing.
+    pub(super) shapes_whole: bool,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -115,6 +120,8 @@ impl Geometry {
             center,
             follows: false,
             look: common_axis(robot, pose),
+            shapes: Vec::new(),
+            shapes_whole: false,
             eye: (robot.base == Base::PlanarFloating).then_some([0.12, -1.0, 0.12]),
         }
     }

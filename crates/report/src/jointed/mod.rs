@@ -5,8 +5,10 @@ mod geometry;
 
 use super::html::{Brief, Replay, Scene, SceneMark, with_decimals, with_digits};
 use super::pose::Pose;
+use super::shapes::Looks;
 use denavit_codegen::model::Robot;
 use denavit_codegen::program::LowerError;
+use denavit_workflow::Shapes;
 use geometry::{Geometry, JointData};
 use serde::Serialize;
 
@@ -81,14 +83,30 @@ impl JointedRobot {
         self
     }
 
+    /// The same with the shapes of a description, and what is to be known of these.
+    pub(crate) fn looking(mut self, shapes: &Shapes) -> (Self, Vec<String>) {
+        let links = &self.geometry.links;
+        let number = |name: &str| {
+            let place = links.iter().position(|link| link.name == name);
+            place.and_then(|place| i64::try_from(place).ok())
+        };
+        let looks = Looks::new(shapes, &number);
+        self.geometry.shapes = looks.shapes;
+        self.geometry.shapes_whole = looks.is_whole;
+        (self, looks.remarks)
+    }
+
     /// With a slider for each joint, and the frames of its links.
     pub(crate) fn with_sliders(mut self, [name, caption]: [String; 2]) -> Replay {
         self.geometry.frames = true;
         let sliders = self.geometry.joints.iter().filter(|joint| joint.is_shown);
+        let has_shapes = !self.geometry.shapes.is_empty();
+        let shapes = has_shapes.then(SceneMark::shapes).into_iter();
+        let marks = [SceneMark::frames(), SceneMark::center_of_mass()];
         let scene = Scene {
             name,
             caption,
-            marks: vec![SceneMark::frames(), SceneMark::center_of_mass()],
+            marks: shapes.chain(marks).collect(),
             sliders: sliders.map(JointData::slider).collect(),
             ..Scene::default()
         };

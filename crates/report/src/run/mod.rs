@@ -50,6 +50,8 @@ const STRIP: f64 = 250.0;
 const POSITION: f64 = 104.0;
 const TORQUE: f64 = 62.0;
 const FORCE: f64 = 150.0;
+/// What is between two diagrams: the lowest mark of one and the highest of the next fit there.
+const APART: f64 = 20.0;
 const MOST_JOINTS: usize = 6;
 
 const BLUE: &str = "stroke=\"#1f5fd0\" stroke-width=\"1.6\"";
@@ -65,7 +67,7 @@ pub(crate) fn run_picture(plant: &mut dyn Plant, picture: &RunPicture<'_>) -> St
     let joints = shown_joints(&model, &log, MOST_JOINTS);
     let forces = force_curves(&model, &log);
     let rows = joints.len().div_ceil(2);
-    let block = 30.0 + POSITION + 12.0 + TORQUE + 30.0;
+    let block = 30.0 + POSITION + APART + TORQUE + 30.0;
     let top = 74.0 + STRIP + 22.0;
     let below = if forces.is_empty() { 0.0 } else { FORCE + 62.0 };
     let height = top + rows as f64 * block + below + 18.0;
@@ -195,7 +197,7 @@ fn joint_diagrams(
     let has_torque = joint.torque.is_some();
     let upper = Axes {
         corner: [corner[0], corner[1] + 24.0],
-        size: [width, if has_torque { POSITION } else { POSITION + 12.0 + TORQUE }],
+        size: [width, if has_torque { POSITION } else { POSITION + APART + TORQUE }],
         x: log.time_scale(8.0),
         y: Scale::around(both.copied(), 4.0),
     };
@@ -210,7 +212,7 @@ fn joint_diagrams(
     let mut bottom = upper.corner[1] + upper.size[1];
     if let Some(torque) = &joint.torque {
         let lower = Axes {
-            corner: [corner[0], bottom + 12.0],
+            corner: [corner[0], bottom + APART],
             size: [width, TORQUE],
             x: upper.x,
             y: Scale::around(torque.iter().copied().chain([0.0]), 3.0),

@@ -5,7 +5,9 @@ use super::super::outline::{hull, round_step};
 use super::super::quaternion::pose_of;
 use super::super::space::{LEAST_SIZE_M, Transform, Vec3, add, extent, norm, scale, sub};
 use super::figures::{feet, generated};
+use crate::answer::ShownWithRun;
 use crate::html::{Brief, Mark, Replay, SceneMark, with_decimals};
+use crate::shapes::{Looks, SceneShape};
 use denavit_plants::{Plant, PlantModel};
 use denavit_simulate::{Event, EventKind, Log, Run};
 use denavit_walk::balance::{Instant, course_of_run};
@@ -57,6 +59,33 @@ struct Data {
     /// Whether the camera goes along.
     follows: bool,
     eye: Option<Vec3>,
+    /// Shapes of links in place of its rows.
+    shapes: Vec<SceneShape>,
+    /// Whether nothing of it is missing.
+    shapes_whole: bool,
+}
+
+impl Data {
+    /// Shows shapes of links: the picture holds them.
+    fn show(&mut self, looks: Looks, frames: &[Frame]) {
+        let frames = if self.follows { &frames[..frames.len().min(1)] } else { frames };
+        let half = scale([1.0; 3], 0.5 * self.size / 3.0_f64.sqrt());
+        let mut points = vec![sub(self.center, half), add(self.center, half)];
+        for shape in &looks.shapes {
+            let (link, ends) = shape.ends();
+            match link {
+                None => points.extend(ends),
+                Some(link) => {
+                    let at = frames.iter().map(|frame| &frame.links[link]);
+                    points.extend(at.flat_map(|at| ends.map(|end| at.point(end))));
+                }
+            }
+        }
+        if !looks.shapes.is_empty() {
+            (self.size, self.center) = extent(&points);
+        }
+        (self.shapes, self.shapes_whole) = (looks.shapes, looks.is_whole);
+    }
 }
 
 #[derive(Serialize)]
@@ -89,9 +118,27 @@ struct EventData {
     text: String,
 }
 
-/// A run that is played back, with what a log has of the same robot; none of a run without
-/// positions.
-pub(crate) fn replay(plant: &mut dyn Plant, run: &Run, log: Option<&LogBeside>) -> Option<Replay> {
+/// A run that is played back, with what a log has of the same robot, and what is to be known of
+/// the shapes of its links; none of a run without positions.
+pub(crate) fn replay(
+    plant: &mut dyn Plant,
+    run: &Run,
+    with: ShownWithRun<'_>,
+) -> (Option<Replay>, Vec<String>) {
+    let links = &plant.model().links;
+    let number = |name: &str| number(links.iter().position(|link| link == name));
+    let known = |name: &str| Some(number(name)).filter(|&place| place >= 0);
+    let looks = with.shapes.map(|shapes| Looks::new(shapes, &known)).unwrap_or_default();
+    let remarks = looks.remarks.clone();
+    (played(plant, run, with.log, looks), remarks)
+}
+
+fn played(
+    plant: &mut dyn Plant,
+    run: &Run,
+    log: Option<&LogBeside>,
+    looks: Looks,
+) -> Option<Replay> {
     let model = plant.model().clone();
     let shown = displayed(&run.log)?;
     let times = shown.column("t")?;
@@ -119,9 +166,13 @@ pub(crate) fn replay(plant: &mut dyn Plant, run: &Run, log: Option<&LogBeside>) 
         frames.len()
     );
     let forces = forces.map(|f| (f, force_n));
-    let data = Data { beside, ..data(&model, &times, &frames, balance, forces, events) };
-    let ghost = log.map(|log| SceneMark::beside(format!("measured: {}", log.file)));
-    Some(Replay::new([name, caption], &marks, ghost, listed.into_iter(), &data))
+    let mut others: Vec<SceneMark> = Vec::new();
+    others.extend((!looks.shapes.is_empty()).then(SceneMark::shapes));
+    others.extend(log.map(|log| SceneMark::beside(format!("measured: {}", log.file))));
+    let mut data = data(&model, &times, &frames, balance, forces, events);
+    data.beside = beside;
+    data.show(looks, &frames);
+    Some(Replay::new([name, caption], &marks, others, listed.into_iter(), &data))
 }
 
 /// Places and turns of the links as a log has them, frame after frame.
@@ -307,6 +358,8 @@ fn data(
         center,
         follows,
         eye: model.planar.then_some([0.12, -1.0, 0.12]),
+        shapes: Vec::new(),
+        shapes_whole: false,
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::super::svg::Svg;
 use super::axes::{Axes, Scale, TICK};
-use super::{BLUE, GREY, HEADING, SCALE, SIDE, TORQUE, WANTED, WIDTH, draw_legend};
+use super::{APART, BLUE, GREY, HEADING, SCALE, SIDE, TORQUE, WANTED, WIDTH, draw_legend};
 use denavit_identify::estimate::Validation;
 use denavit_identify::forward::{Compared, Forward};
 
@@ -19,7 +19,7 @@ pub struct TorquePicture<'a> {
 }
 
 const TALL: f64 = 130.0;
-const BLOCK: f64 = 30.0 + TALL + 10.0 + TORQUE + 36.0;
+const BLOCK: f64 = 30.0 + TALL + APART + TORQUE + 36.0;
 
 /// Samples that a picture shows, at most.
 const DRAWN: usize = 1500;
@@ -115,7 +115,7 @@ fn diagrams(svg: &mut Svg, signal: &Signal, corner: [f64; 2], width: f64) {
     torques.curve(svg, &times, &measured, BLUE);
     torques.curve(svg, &times, &computed, WANTED);
     let left = Axes {
-        corner: [corner[0], corner[1] + 42.0 + TALL],
+        corner: [corner[0], corner[1] + 24.0 + TALL + APART],
         size: [width, TORQUE],
         x,
         y: Scale::around(residual.iter().copied(), 2.0),

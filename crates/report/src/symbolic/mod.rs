@@ -31,7 +31,7 @@ pub use decomposition::DecompositionTexts;
 pub use equations::equations_text;
 pub use equations_json::equations_json;
 pub use evaluated::evaluated_json;
-pub use model::{faults_json, model_json, model_text};
+pub use model::{faults_json, model_json, model_text, robot_faults_json};
 pub(crate) use model::{model_row, model_rows, model_tables};
 pub use shipped::{ShippedFile, ShippedKind, shipped_table};
 pub use sources::{sources_json, sources_text};

@@ -3,4 +3,5 @@
 mod effects_page;
 mod page;
 mod run_page;
+mod shapes;
 mod symbolic;

@@ -1,6 +1,6 @@
 //! The page of a run: what is played back is what the run did.
 
-use denavit_report::answer::run_page;
+use denavit_report::answer::{ShownWithRun, run_page};
 use denavit_workflow::Files;
 use serde_json::Value;
 use std::path::Path;
@@ -10,7 +10,7 @@ fn replayed(name: &str) -> (Value, String) {
     let mut scenario = Files::default().scenario(Path::new(name)).unwrap();
     let run = scenario.run().unwrap();
     let broken = scenario.broken(&run);
-    let page = run_page(&mut scenario, &run, &broken, None, Vec::new()).render();
+    let page = run_page(&mut scenario, &run, &broken, ShownWithRun::default(), "0").render();
     let (_, figure) = page.split_once("<figure class=\"scene\">").expect("a replay");
     let (_, data) = figure.split_once("<script type=\"application/json\">").expect("data");
     let (data, _) = data.split_once("</script>").expect("their end");

@@ -4,7 +4,7 @@ import uPlot from "uplot";
 import { makeWhenSeen } from "./seen.js";
 import { colour, isPaper, onTheme } from "./theme.js";
 
-/** How a curve looks by what it is; others have the colours of a palette in turn. */
+/** How a curve looks by what it is; others have the colours of a palette in turn, with dashes. */
 const LOOKS = {
   measured: { colour: "measured", width: 1.6 },
   computed: { colour: "computed", width: 1.6, dash: [6, 4] },
@@ -13,7 +13,13 @@ const LOOKS = {
   points: { colour: "measured", points: true },
   law: { colour: "computed", points: true },
 };
-const PALETTE = 8;
+const PALETTE = 6;
+/** So that curves are told apart without their colours, too. */
+const DASHES = [undefined, [7, 4], [2, 3], [10, 3, 2, 3], [5, 2], [1, 5]];
+/** Of so many curves the one below the cursor stands out. */
+const MANY = 4;
+/** Scales of panels that are lower have marks that stand closer [px]. */
+const LOW = 130;
 /** How much is seen through a band: the last two digits of its colour. */
 const BAND = "55";
 const PAPER_WIDTH = 640;
@@ -40,7 +46,8 @@ function shown(value) {
 }
 
 function lookOf(curve, place) {
-  return LOOKS[curve.look] ?? { colour: `c${place % PALETTE}`, width: 1.2 };
+  const at = place % PALETTE;
+  return LOOKS[curve.look] ?? { colour: `c${at}`, width: 1.4, dash: DASHES[at] };
 }
 
 /** The curves of a panel: of one that chatters its least and its greatest, with what is between. */
@@ -76,7 +83,7 @@ function series({ name, look }) {
   };
 }
 
-function axis(label, isLeft) {
+function axis(label, isLeft, height) {
   return {
     label,
     labelSize: isLeft ? 20 : 18,
@@ -86,8 +93,12 @@ function axis(label, isLeft) {
     stroke: () => colour("quiet"),
     grid: { stroke: () => colour("rule"), width: 1 },
     ticks: { stroke: () => colour("rule"), width: 1 },
-    space: isLeft ? 28 : 60,
-    values: (_, ticks) => ticks.map(tick => (tick === null ? "" : shown(tick))),
+    space: !isLeft ? 60 : height < LOW ? 14 : 28,
+    values: (plot, ticks) => {
+      const words = ticks.map(tick => (tick === null ? "" : shown(tick)));
+      if (isLeft) plot.root.dataset.marks = words.filter(Boolean).length;
+      return words;
+    },
   };
 }
 
@@ -104,14 +115,16 @@ function shade(plot, windows) {
   ctx.restore();
 }
 
-/** Lines of a logarithmic scale stand at powers of ten alone. */
+/** Lines of a logarithmic scale stand at powers of ten alone, if there are two of them. */
 function powers(_, ticks) {
-  return ticks.map(tick => (Math.abs(Math.log10(tick) % 1) < 1e-9 ? tick : null));
+  const isPower = tick => Math.abs(Math.log10(tick) - Math.round(Math.log10(tick))) < 1e-9;
+  const isLong = ticks.filter(isPower).length > 1;
+  return ticks.map(tick => (!isLong || isPower(tick) ? tick : null));
 }
 
 function options(data, panel, { all, bands }, isLast, own, box, width) {
-  const many = panel.curves.length > 4;
-  const left = axis(panel.label, true);
+  const many = panel.curves.length > MANY;
+  const left = axis(panel.label, true, panel.height);
   if (panel.log) for (const lines of [left, left.grid, left.ticks]) lines.filter = powers;
   return {
     width,

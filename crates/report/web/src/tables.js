@@ -30,3 +30,24 @@ export function makeSortable(table) {
     button.addEventListener("click", () => sort(table, button));
   }
 }
+
+/** A table that is wider than its frame says so: its edge fades, and words count the columns. */
+export function makeScrollHint(box) {
+  const hint = document.createElement("p");
+  hint.className = "hint";
+  hint.setAttribute("aria-hidden", "true");
+  box.before(hint);
+  const look = () => {
+    const edge = box.getBoundingClientRect().right;
+    const heads = [...box.querySelectorAll("thead th")];
+    const beyond = box.scrollLeft + box.clientWidth < box.scrollWidth - 1
+      ? heads.filter(head => head.getBoundingClientRect().right > edge + 1).length : 0;
+    box.classList.toggle("more", beyond > 0);
+    const columns = beyond === 1 ? "1 more column" : `${beyond} more columns`;
+    hint.textContent = beyond > 0 ? `${columns} to the right: scroll \u2192` : "";
+    hint.hidden = box.scrollWidth <= box.clientWidth + 1;
+  };
+  box.addEventListener("scroll", look, { passive: true });
+  new ResizeObserver(look).observe(box);
+  look();
+}

@@ -2,6 +2,7 @@
 
 use super::balance::{BalanceCriterion, balance_picture, margin_cells};
 use super::cycle::{multipliers_picture, returns_picture, size};
+use crate::answer::ShownWithRun;
 use crate::answer::run::drawn_run;
 use crate::html::{Cell, Fact, Heading, HtmlTable, Page, Part, Row, Section};
 use crate::run::{GaitCurve, GaitPicture, replay};
@@ -22,7 +23,7 @@ pub fn gait_page(
 ) -> Page {
     let mut moves = vec![figure(joints(scenario, &course), "Joint angles (figures 4.2 and 4.4).")];
     if let Some(run) = &course.run {
-        let motion = replay(scenario.plant.as_mut(), run, None);
+        let motion = replay(scenario.plant.as_mut(), run, ShownWithRun::default()).0;
         moves.splice(0..0, motion.map(Part::Replay));
         let caption = "Snapshots, joints, forces of the ground (figures 4.3 and 4.5).";
         moves.push(figure(drawn_run(scenario, run, None), caption));

@@ -4,7 +4,7 @@ mod faults;
 mod json;
 mod text;
 
-pub use faults::faults_json;
+pub use faults::{faults_json, robot_faults_json};
 
 use super::text_of;
 use crate::{Table, Values};

@@ -3,7 +3,7 @@
 use crate::{Align, Table, Values, paragraph, short};
 use denavit_codegen::expr::ExprId;
 use denavit_codegen::model::{
-    About, Base, Convention, Joint, JointKind, Link, LinkId, Robot, Side, Terms,
+    About, Base, Convention, Joint, JointKind, Link, LinkId, Robot, Role, Side, Terms,
 };
 use std::fmt::{self, Write};
 
@@ -29,10 +29,11 @@ pub(super) fn write(out: &mut dyn Write, robot: &Robot, values: &mut Values) -> 
 /// The numbers of a model beside its rows, those that it has.
 pub(super) fn tables(robot: &Robot, values: &mut Values) -> Vec<(&'static str, Table)> {
     let all = [
+        ("constants", constant_table(robot, values)),
         ("moments of inertia [kg m^2]", inertia_table(robot, values)),
         ("standard deviations that the file states", deviation_table(robot, values)),
         ("limits", limit_table(robot, values)),
-        ("drives, springs, damping", drive_table(robot, values)),
+        (drive_title(robot), drive_table(robot, values)),
         ("contacts", contact_table(robot, values)),
         ("must not touch the ground", body_table(robot, values)),
     ];
@@ -138,6 +139,20 @@ pub(super) fn link_table(robot: &Robot, values: &mut Values) -> Table {
     table
 }
 
+/// The values of what the rows are written in.
+fn constant_table(robot: &Robot, values: &mut Values) -> Table {
+    use Align::{Left, Right};
+    let columns = [("name", Left), ("value", Right), ("unit", Left), ("meaning", Left)];
+    let mut table = Table::new(&columns);
+    for one in robot.parameters.values().filter(|one| one.role == Role::Constant) {
+        let value = one.default.map_or("not given".to_owned(), |value| values.show(value));
+        let unit = one.unit.as_ref().map(ToString::to_string).filter(|unit| unit != "1");
+        let unit = unit.unwrap_or_default();
+        table.push(vec![one.name.clone(), value, unit, clip(one.doc.clone())]);
+    }
+    table
+}
+
 fn inertia_table(robot: &Robot, values: &mut Values) -> Table {
     let names = ["xx", "yy", "zz", "xy", "xz", "yz"];
     let mut columns = vec![("link", Align::Left), ("about", Align::Left)];
@@ -231,8 +246,8 @@ fn limit_table(robot: &Robot, values: &mut Values) -> Table {
     let mut table = Table::new(&[
         ("link", Left),
         ("q [rad, m]", Left),
-        ("|qd|", Left),
-        ("|qdd|", Left),
+        ("|qd| [rad/s, m/s]", Left),
+        ("|qdd| [rad/s^2, m/s^2]", Left),
         ("tau [N m, N]", Left),
     ]);
     for link in robot.links.values() {
@@ -260,17 +275,51 @@ fn optional(values: &mut Values, expr: Option<ExprId>) -> String {
     expr.map_or("-".to_owned(), |expr| values.show(expr))
 }
 
+/// Whether what a drive has is that of a motor's shaft.
+fn is_geared(link: &Link) -> bool {
+    link.drive.is_some_and(|drive| drive.gear_ratio.is_some())
+}
+
+fn drive_title(robot: &Robot) -> &'static str {
+    match robot.links.values().any(is_geared) {
+        true => {
+            "drives, springs, damping; behind a gear, inertia and friction are those of the \
+             motor's shaft"
+        }
+        false => "drives, springs, damping",
+    }
+}
+
+/// A heading with its units: of what turns, of what slides, or both.
+fn with_unit(robot: &Robot, name: &str, units: [&str; 2], turns: fn(&Link) -> bool) -> String {
+    let moving = || robot.links.values().filter(|link| link.joint.kind != JointKind::Fixed);
+    let has = [moving().any(turns), moving().any(|link| !turns(link))];
+    let own: Vec<&str> =
+        units.into_iter().zip(has).filter(|(_, has)| *has).map(|(unit, _)| unit).collect();
+    format!("{name} [{}]", own.join(", "))
+}
+
 fn drive_table(robot: &Robot, values: &mut Values) -> Table {
     use Align::Left;
-    let mut table = Table::new(&[
-        ("link", Left),
-        ("gear", Left),
-        ("rotor inertia", Left),
-        ("viscous", Left),
-        ("coulomb", Left),
-        ("offset", Left),
-        ("springs", Left),
-    ]);
+    let joint_turns = |link: &Link| link.joint.kind == JointKind::Revolute;
+    let motor_turns = |link: &Link| link.joint.kind == JointKind::Revolute || is_geared(link);
+    let heads = [
+        with_unit(robot, "rotor inertia", ["kg m^2", "kg"], motor_turns),
+        with_unit(robot, "viscous", ["N m s/rad", "N s/m"], motor_turns),
+        with_unit(robot, "coulomb", ["N m", "N"], motor_turns),
+        with_unit(robot, "offset", ["N m", "N"], joint_turns),
+        with_unit(robot, "springs", ["N m/rad", "N/m"], joint_turns),
+    ];
+    let gear = match robot.links.values().filter(|link| is_geared(link)).all(joint_turns) {
+        true => "gear".to_owned(),
+        false => "gear [1, rad/m]".to_owned(),
+    };
+    let columns: Vec<(&str, Align)> = ["link", &gear]
+        .into_iter()
+        .chain(heads.iter().map(String::as_str))
+        .map(|text| (text, Left))
+        .collect();
+    let mut table = Table::new(&columns);
     for link in robot.links.values() {
         let springs = springs(values, link);
         let drive = link.drive.unwrap_or_default();

@@ -3,7 +3,7 @@ import { ArrowHelper, Group, Raycaster, Vector2, Vector3 } from "three";
 
 const AXES = [new Vector3(1, 0, 0), new Vector3(0, 1, 0), new Vector3(0, 0, 1)];
 /** Red, green, blue of frames, as the style sheet has them. */
-const COLOURS = ["c1", "c2", "c0"];
+const COLOURS = ["x", "y", "z"];
 const APART = 14;
 /** How near a frame the pointer must be, in pixels. */
 const REACH = 24;
@@ -70,18 +70,27 @@ export class Hints {
     this.labels.forEach((label, link) => {
       if (!label) return;
       const own = this.data.links[link];
-      const seat = own.is_joint_marked && !this.data.is_modified && own.carrier >= 0
-        ? this.poses[own.carrier][0] : this.poses[link][0];
-      const at = own.is_joint_marked && own.carrier < 0 && !this.data.is_modified
-        ? new Vector3(...this.data.base) : seat;
+      // the name of a link is that of its joint: it stands where the joint is
+      const isJoint = own.is_joint && !own.is_marked || own.is_joint_marked;
+      const at = isJoint ? this.robot.seats[link][0] : this.poses[link][0];
       // beside what is drawn there
       const wider = own.is_joint_marked ? 1.5 : 1;
       const seen = at.clone().addScaledVector(side, wider).project(this.stage.camera);
-      const x = (0.5 + 0.5 * seen.x) * wide + 5;
-      let y = (0.5 - 0.5 * seen.y) * tall - 8;
-      while (taken.some(([a, b]) => Math.abs(a - x) < 60 && Math.abs(b - y) < APART)) y += APART;
-      taken.push([x, y]);
-      label.hidden = seen.z > 1 || x > wide || y < 0 || y > tall - APART;
+      const middle = at.clone().project(this.stage.camera);
+      label.hidden = seen.z > 1 || Math.abs(middle.x) > 1 || Math.abs(middle.y) > 1;
+      if (label.hidden) return;
+      const [long, high] = [label.offsetWidth, APART];
+      // where it does not fit on the right it stands on the left, and never beyond the edge
+      let x = (0.5 + 0.5 * seen.x) * wide + 5;
+      if (x + long > wide) x = (0.5 + middle.x - 0.5 * seen.x) * wide - 5 - long;
+      x = Math.max(2, Math.min(x, wide - long - 2));
+      let y = Math.max(2, (0.5 - 0.5 * seen.y) * tall - 8);
+      const meets = ([a, b, c]) => x < a + c && a < x + long && Math.abs(b - y) < APART;
+      const first = y;
+      while (taken.some(meets)) y += APART;
+      // at the lower edge they go up instead
+      if (y > tall - high) for (y = first; taken.some(meets);) y -= APART;
+      taken.push([x, y, long]);
       label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
     });
   }

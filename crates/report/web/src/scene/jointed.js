@@ -1,6 +1,7 @@
 // A robot whose joints are moved here: the rows of its table as transforms at zero, with turns
 // about, or ways along, the z axes of the joints.
 import { Quaternion, Vector3 } from "three";
+import { endsOf } from "./shapes.js";
 
 const Z = new Vector3(0, 0, 1);
 
@@ -69,7 +70,7 @@ function posture(data, number) {
 /** Size and middle of all that a motion passes, so that it stays in the picture. */
 export function fit(data) {
   const frames = data.t.length > 0 ? data.t.length : POSTURES;
-  const [low, high] = [new Vector3(Infinity, Infinity, Infinity), new Vector3(-Infinity, -Infinity, -Infinity)];
+  const [low, high] = [Infinity, -Infinity].map(end => new Vector3(end, end, end));
   const step = Math.max(1, Math.floor(frames / POSTURES));
   for (let frame = 0; frame < frames; frame += step) {
     const of = list => positionsAt(data, [frame, 0], list);
@@ -82,6 +83,10 @@ export function fit(data) {
         low.min(poses[place][0]);
         high.max(poses[place][0]);
       });
+      for (const end of endsOf(data, poses)) {
+        low.min(end);
+        high.max(end);
+      }
     }
   }
   if (!data.follows) {

@@ -6,7 +6,7 @@ import {
 import { place } from "./frames.js";
 
 /** Names of marks, each with the colour of the style sheet. */
-const COLOURS = { com: "computed", zmp: "before", capture: "c4", support: "good", force: "c5" };
+const COLOURS = { com: "computed", zmp: "before", capture: "capture", support: "good", force: "force" };
 
 function line() {
   return new Line(new BufferGeometry(), new LineBasicMaterial());

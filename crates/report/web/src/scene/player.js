@@ -57,6 +57,9 @@ class Player {
       box.addEventListener("change", () => {
         if (box.value === "frames") this.hints.toggle(box.checked);
         if (box.value === "beside") this.isGhostShown = box.checked;
+        if (box.value === "shapes") {
+          for (const one of [this.robot, this.ghost]) if (one) one.shapes.isShown = box.checked;
+        }
         this.marks.toggle(box.value, box.checked);
         this.arcs.toggle(box.value, box.checked);
         this.show(this.time);

@@ -4,6 +4,7 @@ import {
   BoxGeometry, BufferGeometry, CylinderGeometry, DoubleSide, Float32BufferAttribute, Group, Mesh,
   MeshLambertMaterial, Quaternion, SphereGeometry, Vector3,
 } from "three";
+import { Shapes } from "./shapes.js";
 
 const UP = new Vector3(0, 1, 0);
 const AXIS = new Vector3(0, 0, 1);
@@ -65,7 +66,9 @@ export class Robot {
     this.group = new Group();
     const look = ghost ? { transparent: true, opacity: 0.45, depthWrite: false } : {};
     const material = () => new MeshLambertMaterial({ side: DoubleSide, ...look });
-    this.materials = { link: material(), joint: material(), foot: material(), marked: material() };
+    this.materials = { link: material(), joint: material(), foot: material(), marked: material(),
+      shape: material() };
+    this.materials.shape.flatShading = true;
     // as many pixels in every picture, however far its joints reach
     const extent = data.view ?? data.size;
     const radius = THICK * extent * (ghost ? WIDER : 1);
@@ -98,6 +101,9 @@ export class Robot {
     this.spikes = data.feet.map(own => own.points.map(() => new Capsule(0.5 * radius, foot)));
     const capsules = [...this.tips, ...this.spikes.flat()].map(one => one.group);
     for (const part of [...capsules, ...this.feet]) this.group.add(part);
+    this.rows = [...this.group.children];
+    this.shapes = new Shapes(data, this.materials.shape);
+    for (const mesh of this.shapes.all) this.group.add(mesh);
   }
 
   paint(colour) {
@@ -138,6 +144,23 @@ export class Robot {
       this.tips[place].put(poses[tip.link][0], seen(tip.link, tip.at));
     });
     data.feet.forEach((foot, place) => this.stand(foot, place, poses, seen));
+    this.shapes.show(poses);
+    // what is put anew is seen again
+    const isHidden = this.shapes.isWhole;
+    if (isHidden || this.wasHidden) {
+      for (const one of this.rows) {
+        if (isHidden) one.visible = false;
+        else if (!this.isPut(one)) one.visible = true;
+      }
+    }
+    this.wasHidden = isHidden;
+  }
+
+  /** Whether a part says itself, whenever it is put, whether it is seen. */
+  isPut(part) {
+    const capsules = [...this.links.flatMap(one => [one.along, one.across]), ...this.tips,
+      ...this.spikes.flat()];
+    return capsules.some(one => one.group === part);
   }
 
   stand(foot, place, poses, seen) {

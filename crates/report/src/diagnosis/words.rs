@@ -1,0 +1,154 @@
+//! A diagnosis in sentences: the verdict, what is left, and what that looks like.
+
+use crate::html::{Grade, VerdictLine};
+use crate::percent;
+use denavit_diagnose::{Candidate, Diagnosis, FoundEffect, Gaps, Verdict};
+
+/// What is left is noise up to this many times what noise alone leaves.
+const LIKE_NOISE: f64 = 1.5;
+
+/// The share of the gap from which an effect is said to close it.
+const LEAST_SHARE: f64 = 0.001;
+
+/// The answer in a sentence or two: the verdict, and what was found.
+pub(super) fn verdict(found: &Diagnosis, candidates: &[Candidate]) -> VerdictLine {
+    let grade = match found.verdict {
+        Verdict::NothingMissing | Verdict::Explained => Grade::Good,
+        Verdict::PartlyExplained => Grade::Fair,
+        Verdict::Unexplained | Verdict::CannotTell => Grade::Bad,
+    };
+    VerdictLine { grade, text: verdict_sentence(found, candidates) }
+}
+
+fn verdict_sentence(found: &Diagnosis, candidates: &[Candidate]) -> String {
+    let mut text = match found.verdict {
+        Verdict::NothingMissing => nothing_missing(&found.held_out, found.is_left_at_reversals),
+        Verdict::Explained => {
+            "What the model lacks is named, and explains the disagreement.".to_owned()
+        }
+        Verdict::PartlyExplained => "A part of what the model lacks is named.".to_owned(),
+        Verdict::Unexplained => {
+            "The model lacks something that is not in the catalogue.".to_owned()
+        }
+        Verdict::CannotTell => "The logs do not tell what the model lacks.".to_owned(),
+    };
+    for (is_named, word) in [(true, "Found"), (false, "Nearest to what has no name")] {
+        let all = found.effects.iter().filter(|one| one.is_named == is_named);
+        let names = all.map(|one| &candidates[one.candidate]);
+        let names: Vec<String> = names.map(|own| format!("{} at {}", own.title, own.at)).collect();
+        if !names.is_empty() {
+            text += &format!(" {word}: {}.", names.join("; "));
+        }
+    }
+    text
+}
+
+/// What it means that nothing is missing where so much is left.
+fn nothing_missing(held_out: &Gaps, is_left_at_reversals: bool) -> String {
+    let Gaps { after, floor, .. } = held_out;
+    if beyond_noise(held_out).is_none() {
+        return "Nothing is missing: what is left is noise.".to_owned();
+    }
+    let what = match is_left_at_reversals {
+        true => "most of it where drives turn around or rest",
+        false => "and it looks like a disturbance",
+    };
+    let [left, noise] = [after.all, floor.all].map(percent);
+    format!(
+        "Nothing of the catalogue is missing: {left} of the torque is left where noise alone \
+         leaves {noise}, {what}."
+    )
+}
+
+/// The share of the torque that is left beyond noise; none where what is left is about noise.
+fn beyond_noise(held_out: &Gaps) -> Option<f64> {
+    let Gaps { after, floor, .. } = held_out;
+    (after.all > LIKE_NOISE * floor.all)
+        .then(|| (after.all * after.all - floor.all * floor.all).sqrt())
+}
+
+/// The answer in a paragraph: verdict, what was found, the gap before and after, reasons.
+pub fn verdict_paragraph(found: &Diagnosis, candidates: &[Candidate]) -> String {
+    format!("{} {}", verdict_sentence(found, candidates), reasons(found))
+}
+
+/// The gap before and after, and what speaks for the verdict.
+pub(super) fn reasons(found: &Diagnosis) -> String {
+    let Gaps { before, after, floor } = &found.held_out;
+    let mut text = format!(
+        "On held-out logs the gap of the torques was {}, with what was found it is {}, and noise \
+         alone leaves {}",
+        percent(before.all),
+        percent(after.all),
+        percent(floor.all)
+    );
+    if let Some(share) = found.share_closed().filter(|_| !found.effects.is_empty()) {
+        let share = if share > 0.0 { percent(share) } else { "nothing".to_owned() };
+        text += &format!(": {share} of what can be explained is closed");
+    }
+    text.push('.');
+    text += &looks_like(found).map_or_else(String::new, |sentence| format!(" {sentence}"));
+    for reason in &found.reasons {
+        let mut letters = reason.chars();
+        let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+        text += &format!(" {first}{}.", letters.as_str());
+    }
+    text
+}
+
+/// Whether what is left beyond noise looks like physics or like a disturbance.
+fn looks_like(found: &Diagnosis) -> Option<String> {
+    let share = percent(beyond_noise(&found.held_out)?);
+    let best = found.structures.iter().max_by(|a, b| a.share.total_cmp(&b.share));
+    match (found.verdict, best) {
+        (Verdict::CannotTell, _) => None,
+        (_, Some(one)) if one.share > 0.5 => Some(format!(
+            "The {share} of the torque beyond noise looks like physics: a formula of the motion \
+             explains {} of the squares that {} leaves.",
+            percent(one.share),
+            one.at
+        )),
+        (_, Some(one)) => Some(format!(
+            "The {share} of the torque beyond noise looks like a disturbance, more than like \
+             physics: the best formula of the motion explains {} of the squares that {} leaves.",
+            percent(one.share),
+            one.at
+        )),
+        (_, None) if found.is_left_at_reversals => None,
+        (_, None) => Some(format!(
+            "The {share} of the torque beyond noise looks like a disturbance: no formula of the \
+             motion is found in it."
+        )),
+    }
+}
+
+/// How much of the gap an effect closes, in words; none where the other terms close as much
+/// without it.
+pub(crate) fn closes(one: &FoundEffect) -> Option<String> {
+    (one.share > LEAST_SHARE).then(|| percent(one.share))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use denavit_diagnose::Gap;
+
+    fn gaps(after: f64, floor: f64) -> Gaps {
+        let [before, after, floor] =
+            [after, after, floor].map(|all| Gap { all, per_joint: vec![Some(all)] });
+        Gaps { before, after, floor }
+    }
+
+    #[test]
+    fn nothing_missing_says_so_of_noise_alone() {
+        let said = |after, floor, at_reversals| nothing_missing(&gaps(after, floor), at_reversals);
+        assert_eq!(said(0.0021, 0.0017, false), "Nothing is missing: what is left is noise.");
+        let disturbed = "Nothing of the catalogue is missing: 2.11 % of the torque is left where \
+                         noise alone leaves 0.17 %, and it looks like a disturbance.";
+        assert_eq!(said(0.0211, 0.0017, false), disturbed);
+        assert!(
+            said(0.0211, 0.0017, true).ends_with("most of it where drives turn around or rest.")
+        );
+        assert!(said(0.004, 0.0, false).contains("0.40 % of the torque"));
+    }
+}

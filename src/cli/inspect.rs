@@ -5,7 +5,7 @@ use super::failure::Failure;
 use super::files::read_model_with_effects;
 use super::json::write_json;
 use super::options::{EffectsOption, ModelArgument, ShapesOption};
-use super::outputs::{on_stdout, write_whole};
+use super::outputs::{on_stdout, print_answer, write_whole};
 use clap::Args;
 use denavit::program::CodeError;
 use denavit::report::symbolic::{model_json, model_text, robot_faults_json};
@@ -45,39 +45,28 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
-    let is_answered =
-        on_stdout(&[arguments.svg.as_ref(), arguments.html.as_ref()], arguments.json)?;
+    let outputs = [arguments.svg.as_ref(), arguments.html.as_ref()];
+    let is_answered = on_stdout(&outputs, arguments.json)?;
     let effects = arguments.effects.effects.as_deref();
     let robot =
         read_model_with_effects(&arguments.model.model, effects).inspect_err(|failure| {
             let Failure::Work(error) = failure else { return };
             if let Some(faults) = error.robot_faults().filter(|_| arguments.json) {
                 // where nobody reads them, the failure says them, too
-                let _ =
-                    write_json(out, &robot_faults_json(&faults)).and_then(|()| Ok(out.flush()?));
+                let _ = write_json(out, &robot_faults_json(&faults)).map(|()| out.flush());
             }
         })?;
+    let wrong = |error| CodeError::Lower(robot.name.clone(), error);
     if let Some(file) = &arguments.svg {
-        let pose =
-            Pose::zero(&robot).map_err(|error| CodeError::Lower(robot.name.clone(), error))?;
+        let pose = Pose::zero(&robot).map_err(wrong)?;
         write_whole(file, picture(&robot, &pose).as_bytes())?;
     }
     if let Some(file) = &arguments.html {
         let shapes = arguments.shapes.read(&arguments.model.model)?;
         let page = inspection_page(&robot, env!("CARGO_PKG_VERSION"), shapes.as_ref());
-        let page = page.map_err(|error| CodeError::Lower(robot.name.clone(), error))?;
-        write_whole(file, page.render().as_bytes())?;
+        write_whole(file, page.map_err(wrong)?.render().as_bytes())?;
     }
-    if is_answered {
-        return Ok(Answer::Done);
-    }
-    if arguments.json {
-        write_json(out, &model_json(&robot))?;
-    } else {
-        write!(out, "{}", model_text(&robot))?;
-        for file in [&arguments.svg, &arguments.html].into_iter().flatten() {
-            writeln!(out, "\nwrote {}", file.display())?;
-        }
-    }
+    let shown = (is_answered, arguments.json);
+    print_answer(out, shown, || model_json(&robot), || model_text(&robot), &outputs)?;
     Ok(Answer::Done)
 }

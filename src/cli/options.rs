@@ -30,12 +30,10 @@ pub(crate) struct EffectsOption {
 /// What links look like on a page.
 #[derive(Debug, Args)]
 pub(crate) struct ShapesOption {
-    /// Show the shapes of this URDF on links of the same names; without it those of the model
-    /// itself, where that is a URDF
+    /// Show this URDF's shapes on links of the same names; without it those of a model in URDF
     #[arg(long, value_name = "URDF", requires = "html")]
     shapes: Option<PathBuf>,
-    /// Folder of their meshes (STL, OBJ), or of the package of `package://`; without it that of
-    /// the URDF
+    /// Folder of their meshes (STL, OBJ), or of their package; without it that of the URDF
     #[arg(long, value_name = "DIR", requires = "html")]
     meshes: Option<PathBuf>,
 }

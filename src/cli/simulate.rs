@@ -5,13 +5,16 @@ use super::failure::Failure;
 use super::files::{FILES, mapping};
 use super::logs::{log_source, note_logs, run_file};
 use super::options::ShapesOption;
-use super::outputs::{check_outputs, on_stdout, print_answer, write_whole};
+use super::outputs::{check_outputs, on_stdout, print_answer, write_given, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum, ValueHint};
-use denavit::report::answer::{ShownWithRun, drawn_run, run_json, run_page, run_text};
+use denavit::report::answer::{
+    ShownWithRun, drawn_at, drawn_run, run_json, run_page, run_text, window_of,
+};
+use denavit::report::{can_draw_png, png};
 use denavit::simulate::scenario::{RunScheme, Scenario};
 use denavit::simulate::{Log, Stop};
-use denavit::workflow::{LogBeside, LogSource, Logs, simulate};
+use denavit::workflow::{LogBeside, LogSource, Logs, simulate, step_of};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -42,12 +45,19 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum)]
     scheme: Option<SchemeName>,
     /// The step of time stepping, in place of the scenario's
-    #[arg(long, value_name = "SECONDS", value_parser = step)]
+    #[arg(long, value_name = "SECONDS", value_parser = step_of)]
     step: Option<f64>,
     /// Draw the run: figures, joints with references and torques, contact forces; - is standard
     /// output
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
+    /// The same drawing as PNG, in builds with the feature `png`; - is standard output
+    #[arg(long, value_name = "FILE",
+        value_parser = |file: &str| can_draw_png().map(|()| PathBuf::from(file)))]
+    png: Option<PathBuf>,
+    /// Draw the robot alone in it, at this time
+    #[arg(long, value_name = "SECONDS", requires = "png")]
+    at: Option<f64>,
     /// Write the run as one page of HTML: played back in three dimensions, with its curves and its
     /// audit; - is standard output
     #[arg(long, value_name = "FILE")]
@@ -63,7 +73,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     shapes: ShapesOption,
     /// The part of the run that is drawn
-    #[arg(long, value_name = "FROM,TO", value_parser = window, requires = "svg")]
+    #[arg(long, value_name = "FROM,TO", value_parser = window_of, requires = "svg")]
     window: Option<[f64; 2]>,
     /// The summary as JSON
     #[arg(long)]
@@ -76,21 +86,6 @@ enum SchemeName {
     Event,
     /// Steps that take contacts, impacts and friction into account
     TimeStepping,
-}
-
-fn window(text: &str) -> Result<[f64; 2], String> {
-    let numbers = text.split_once(',').and_then(|(from, to)| {
-        Some([from.trim().parse::<f64>().ok()?, to.trim().parse::<f64>().ok()?])
-    });
-    match numbers {
-        Some([from, to]) if from < to => Ok([from, to]),
-        _ => Err("two times in seconds, as 1.6,3.2".to_owned()),
-    }
-}
-
-fn step(text: &str) -> Result<f64, String> {
-    let step: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if (1e-9..=1.0).contains(&step) { Ok(step) } else { Err("not from 1e-9 to 1 s".to_owned()) }
 }
 
 /// The log that is shown beside the run.
@@ -110,7 +105,8 @@ pub(super) fn run_kept(
     arguments: &Arguments,
     out: &mut dyn Write,
 ) -> Result<(Answer, Log), Failure> {
-    let outputs = [arguments.output.as_ref(), arguments.svg.as_ref(), arguments.html.as_ref()];
+    let outputs = [&arguments.output, &arguments.svg, &arguments.png, &arguments.html];
+    let outputs = outputs.map(Option::as_ref);
     let is_answered = on_stdout(&outputs, arguments.json)?;
     let mut scenario = FILES.scenario(&arguments.scenario)?;
     match arguments.scheme {
@@ -141,17 +137,15 @@ pub(super) fn run_kept(
     if let Some(path) = &arguments.output {
         write_whole(path, &run_file(path, &run.log)?)?;
     }
-    if let Some(path) = &arguments.svg {
-        // a run that ends before the window is drawn as it is
-        let window = arguments.window.filter(|[from, _]| *from < run.end.t_s);
-        let drawn = drawn_run(&mut scenario, &run, window);
-        write_whole(path, drawn.as_bytes())?;
+    // a run that ends before the window is drawn as it is
+    let window = arguments.window.filter(|[from, _]| *from < run.end.t_s);
+    write_given(&arguments.svg, || drawn_run(&mut scenario, &run, window))?;
+    if let Some(path) = &arguments.png {
+        write_whole(path, &png(&drawn_at(&mut scenario, &run, arguments.at)))?;
     }
-    if let Some(path) = &arguments.html {
-        let with = ShownWithRun { log: beside.as_ref(), shapes: shapes.as_ref() };
-        let page = run_page(&mut scenario, &run, &broken, with, env!("CARGO_PKG_VERSION"));
-        write_whole(path, page.render().as_bytes())?;
-    }
+    let with = ShownWithRun { log: beside.as_ref(), shapes: shapes.as_ref() };
+    let page = || run_page(&mut scenario, &run, &broken, with, env!("CARGO_PKG_VERSION")).render();
+    write_given(&arguments.html, page)?;
     let shown = (is_answered, arguments.json);
     print_answer(
         out,

@@ -22,7 +22,7 @@ pub use excited::{
 };
 pub use identified::{identified_doubts, identified_text};
 pub use identified_json::identified_json;
-pub use run::{drawn_run, run_json, run_text};
+pub use run::{drawn_at, drawn_run, run_json, run_text, window_of};
 pub use run_page::{ShownWithRun, run_page};
 pub use statics::{statics_json, statics_text};
 pub use two_stage::two_stage_text;

@@ -102,7 +102,10 @@ fn part(caption: String, table: &Table) -> Part {
         let mut cells: Vec<Cell> = cells
             .iter()
             .zip(table.columns())
-            .map(|(text, (_, align))| cell(text, *align))
+            .map(|(text, (heading, align))| match heading.as_str() {
+                "unit" => Cell::unit(text),
+                _ => cell(text, *align),
+            })
             .collect();
         cells.resize(table.columns().len(), Cell::text(""));
         Row { cells, is_marked: false }

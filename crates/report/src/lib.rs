@@ -31,6 +31,7 @@ mod ordered;
 mod outline;
 mod paragraph;
 mod picture;
+mod png;
 mod pose;
 mod quaternion;
 mod run;
@@ -53,6 +54,7 @@ pub use inspection::inspection_page;
 pub use ordered::Ordered;
 pub use paragraph::paragraph;
 pub use picture::picture;
+pub use png::{can_draw_png, png};
 pub use pose::Pose;
 pub use run::{
     ExcitationPicture, TorquePicture, excitation_picture, motion_picture, torque_picture,

@@ -65,7 +65,7 @@ pub use mistaken::{FileKind, Mistaken};
 pub use observer::{Observer, Progress, Silent, Stage};
 pub use robot_file::{EffectUse, RobotFile, WholeRobot};
 pub use shapes::{LookOfLink, Shapes};
-pub use simulate::simulate;
+pub use simulate::{simulate, step_of};
 pub use walk::{
     Designed, Gait, GaitBasin, GaitCurves, GaitQuantity, JudgeOptions, Judged, PushQuestion,
     PushedGait, Starts, compare_criteria, design_gait, gait_basin, judge_log, judge_run, push_gait,

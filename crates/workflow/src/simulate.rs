@@ -26,3 +26,12 @@ pub fn simulate(scenario: &mut Scenario, observer: &mut dyn Observer) -> Result<
     };
     Ok(scenario.run_told(&mut told).map_err(Cause::Scenario)?)
 }
+
+/// A step of time stepping, as text \[s\].
+///
+/// # Errors
+/// What is wrong with it.
+pub fn step_of(text: &str) -> Result<f64, String> {
+    let step: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (1e-9..=1.0).contains(&step) { Ok(step) } else { Err("not from 1e-9 to 1 s".to_owned()) }
+}

@@ -311,3 +311,13 @@ fn figures_of_contacts_are_those_of_robots_with_contacts() {
         assert_eq!(log.contains("# audit_adhesion_n: "), touches, "{log}");
     }
 }
+
+#[cfg(not(feature = "png"))]
+#[test]
+fn a_build_without_png_says_how_to_get_one_before_it_runs() {
+    let directory = Directory::new("png");
+    let run = simulate(&directory, &arm(""), &["--png", "a.png", "--at", "0.5"]);
+    assert_eq!(run.code, Some(2), "{}", run.stdout);
+    assert!(run.stderr.contains("--features png"), "{}", run.stderr);
+    assert!(!directory.files().contains(&"a.png".to_owned()));
+}

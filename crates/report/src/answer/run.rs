@@ -1,7 +1,7 @@
 //! A run as text, as JSON and as a picture.
 
 use super::run_joints;
-use crate::run::{RunPicture, run_picture};
+use crate::run::{RunPicture, figure_at, run_picture};
 use denavit_simulate::Run;
 use denavit_simulate::scenario::{RunScheme, Scenario};
 use serde_json::json as value;
@@ -20,6 +20,27 @@ pub fn drawn_run(scenario: &mut Scenario, run: &Run, window_s: Option<[f64; 2]>)
     );
     let picture = RunPicture { title: &title, subtitle: &subtitle, log: &run.log, window_s };
     run_picture(scenario.plant.as_mut(), &picture)
+}
+
+/// The robot at the row of a run that is nearest to a time, as SVG; the whole run without a time.
+pub fn drawn_at(scenario: &mut Scenario, run: &Run, t_s: Option<f64>) -> String {
+    let Some(t_s) = t_s else { return drawn_run(scenario, run, None) };
+    let title = scenario.name.replace('_', " ");
+    figure_at(scenario.plant.as_mut(), &run.log, &title, t_s)
+}
+
+/// A part of a run that is drawn, as two times.
+///
+/// # Errors
+/// How they are written.
+pub fn window_of(text: &str) -> Result<[f64; 2], String> {
+    let numbers = text.split_once(',').and_then(|(from, to)| {
+        Some([from.trim().parse::<f64>().ok()?, to.trim().parse::<f64>().ok()?])
+    });
+    match numbers {
+        Some([from, to]) if from < to => Ok([from, to]),
+        _ => Err("two times in seconds, as 1.6,3.2".to_owned()),
+    }
 }
 
 pub(super) fn scheme_text(scenario: &Scenario) -> String {

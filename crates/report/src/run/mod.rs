@@ -96,6 +96,26 @@ pub(crate) fn run_picture(plant: &mut dyn Plant, picture: &RunPicture<'_>) -> St
     svg.finish()
 }
 
+/// Height of the picture of one figure.
+const FIGURE: f64 = 640.0;
+
+/// SVG of a robot at the row of a log that is nearest to a time. The same run gives the same bytes.
+pub(crate) fn figure_at(plant: &mut dyn Plant, log: &Log, title: &str, t_s: f64) -> String {
+    let times = log.column("t").unwrap_or_default();
+    let apart = |time: &&f64| (*time - t_s).abs();
+    let nearest = times.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
+    let window_s = nearest.map(|time| [*time; 2]);
+    let title = &nearest.map_or_else(String::new, |time| format!("{title} at {time:.3} s"));
+    let picture = RunPicture { title, subtitle: "", log, window_s };
+    let rows = Windowed::new(&picture).positions(&plant.model().clone());
+    let mut svg = Svg::new([WIDTH, FIGURE + 90.0], title);
+    let style = "font-size=\"20\" font-weight=\"bold\" fill=\"#222\"";
+    svg.label([SIDE, 34.0], "start", style, title);
+    let size = [WIDTH - 2.0 * SIDE, FIGURE];
+    Strip::new(plant, &rows, size).draw(&mut svg, [SIDE, 60.0], size);
+    svg.finish()
+}
+
 /// The part of a log that is shown, by columns.
 struct Windowed<'a> {
     log: &'a Log,

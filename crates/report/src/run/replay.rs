@@ -59,6 +59,8 @@ struct Data {
     /// Whether the camera goes along.
     follows: bool,
     eye: Option<Vec3>,
+    /// How much is seen; where nothing is said, the size.
+    view: Option<f64>,
     /// Shapes of links in place of its rows.
     shapes: Vec<SceneShape>,
     /// Whether nothing of it is missing.
@@ -69,8 +71,7 @@ impl Data {
     /// Shows shapes of links: the picture holds them.
     fn show(&mut self, looks: Looks, frames: &[Frame]) {
         let frames = if self.follows { &frames[..frames.len().min(1)] } else { frames };
-        let half = scale([1.0; 3], 0.5 * self.size / 3.0_f64.sqrt());
-        let mut points = vec![sub(self.center, half), add(self.center, half)];
+        let mut points: Vec<Vec3> = frames.iter().map(|frame| frame.center).collect();
         for shape in &looks.shapes {
             let (link, ends) = shape.ends();
             match link {
@@ -82,7 +83,12 @@ impl Data {
             }
         }
         if !looks.shapes.is_empty() {
-            (self.size, self.center) = extent(&points);
+            let [low, high] = [f64::min, f64::max].map(|of: fn(f64, f64) -> f64| {
+                [0, 1, 2]
+                    .map(|axis| points.iter().map(|point| point[axis]).fold(points[0][axis], of))
+            });
+            self.center = scale(add(low, high), 0.5);
+            self.view = Some(sub(high, low).into_iter().fold(0.0, f64::max));
         }
         (self.shapes, self.shapes_whole) = (looks.shapes, looks.is_whole);
     }
@@ -358,6 +364,7 @@ fn data(
         center,
         follows,
         eye: model.planar.then_some([0.12, -1.0, 0.12]),
+        view: None,
         shapes: Vec::new(),
         shapes_whole: false,
     }

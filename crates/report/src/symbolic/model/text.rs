@@ -37,8 +37,9 @@ pub(super) fn tables(robot: &Robot, values: &mut Values) -> Vec<(&'static str, T
         ("contacts", contact_table(robot, values)),
         ("must not touch the ground", body_table(robot, values)),
     ];
-    let full = all.into_iter().filter(|(_, table)| !table.is_empty());
-    full.map(|(title, table)| (title, table.without_empty_columns())).collect()
+    let full = all.into_iter().map(|(title, table)| (title, table.without_empty_columns()));
+    // names alone say nothing
+    full.filter(|(_, table)| !table.is_empty() && table.columns().len() > 1).collect()
 }
 
 fn head(out: &mut dyn Write, robot: &Robot, values: &mut Values) -> fmt::Result {

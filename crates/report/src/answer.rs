@@ -14,6 +14,7 @@ mod two_stage;
 mod two_stage_json;
 mod walk;
 
+pub use crate::run::ShownWithRun;
 pub use diagnosed::diagnosed_text;
 pub use diagnosed_json::diagnosed_json;
 pub use diagnosis_folder::{DIAGNOSIS_FILES, DiagnosisFolder};
@@ -23,7 +24,7 @@ pub use excited::{
 pub use identified::{identified_doubts, identified_text};
 pub use identified_json::identified_json;
 pub use run::{drawn_at, drawn_run, run_json, run_text, window_of};
-pub use run_page::{ShownWithRun, run_page};
+pub use run_page::run_page;
 pub use statics::{statics_json, statics_text};
 pub use two_stage::two_stage_text;
 pub use two_stage_json::two_stage_json;

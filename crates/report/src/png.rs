@@ -7,8 +7,8 @@
 pub fn can_draw_png() -> Result<(), &'static str> {
     match cfg!(feature = "png") {
         true => Ok(()),
-        false => Err("this build draws no PNG; `cargo install --path . --features png` makes one \
-                      that does, and --svg draws the same"),
+        false => Err("this build draws no PNG: one with the feature `png` does (cargo install \
+                      --path . --features png); SVG is the same picture"),
     }
 }
 

@@ -2,19 +2,9 @@
 
 use super::run::scheme_text;
 use crate::html::{Cell, Fact, Grade, Heading, HtmlTable, Page, Part, Row, Section, VerdictLine};
-use crate::run::{beside_parts, replay, run_charts};
+use crate::run::{ShownWithRun, beside_parts, replay, run_charts};
 use denavit_simulate::scenario::Scenario;
 use denavit_simulate::{EventKind, Run, Stop};
-use denavit_workflow::{LogBeside, Shapes};
-
-/// What a page shows with a run.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct ShownWithRun<'a> {
-    /// A log of the same robot.
-    pub log: Option<&'a LogBeside>,
-    /// What its links look like.
-    pub shapes: Option<&'a Shapes>,
-}
 
 /// A run on one page: played back, with its curves and its audit; `broken` are the tolerances that
 /// it broke (law, found, allowed), `version` is that of the program.

@@ -95,6 +95,8 @@ pub enum Look {
     Law,
     /// One of many: by its place.
     Palette,
+    /// One of many more.
+    Faint,
 }
 
 fn as_times<S: Serializer>(list: &&[f64], serializer: S) -> Result<S::Ok, S::Error> {

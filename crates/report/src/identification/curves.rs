@@ -123,8 +123,10 @@ pub(super) fn convergence(parameters: &[IdentifiedParameter], points: &[Converge
                 |most: f64, off| if off.is_finite() { most.max(off.abs()) } else { most },
             )
         };
-        curves.sort_by(|a, b| late(b).total_cmp(&late(a)));
-        curves[COLOURED..].iter_mut().for_each(|one| one.look = Look::Residual);
+        // what is drawn last is seen
+        curves.sort_by(|a, b| late(a).total_cmp(&late(b)));
+        let grey = curves.len() - COLOURED;
+        curves[..grey].iter_mut().for_each(|one| one.look = Look::Faint);
         others = format!(
             " In colour are the {COLOURED} that were still furthest away in the second half; the \
              others are grey. A curve stands out where the pointer is near it, or on its name."

@@ -17,6 +17,7 @@ pub(crate) use beside::beside_parts;
 pub(crate) use compared::diagnosis_picture;
 pub(crate) use curves::run_charts;
 pub(crate) use gait::{GaitCurve, GaitPicture};
+pub use replay::ShownWithRun;
 pub(crate) use replay::replay;
 pub use torques::{TorquePicture, motion_picture, torque_picture};
 

@@ -5,13 +5,12 @@ use super::super::outline::{hull, round_step};
 use super::super::quaternion::pose_of;
 use super::super::space::{LEAST_SIZE_M, Transform, Vec3, add, extent, norm, scale, sub};
 use super::figures::{feet, generated};
-use crate::answer::ShownWithRun;
 use crate::html::{Brief, Mark, Replay, SceneMark, with_decimals};
 use crate::shapes::{Looks, SceneShape};
 use denavit_plants::{Plant, PlantModel};
 use denavit_simulate::{Event, EventKind, Log, Run};
 use denavit_walk::balance::{Instant, course_of_run};
-use denavit_workflow::LogBeside;
+use denavit_workflow::{LogBeside, Shapes};
 use serde::Serialize;
 
 /// Frames of a second, and of a run at least and at most.
@@ -122,6 +121,15 @@ struct FootData {
 struct EventData {
     t: f64,
     text: String,
+}
+
+/// What a page shows with a run.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ShownWithRun<'a> {
+    /// A log of the same robot.
+    pub log: Option<&'a LogBeside>,
+    /// What its links look like.
+    pub shapes: Option<&'a Shapes>,
 }
 
 /// A run that is played back, with what a log has of the same robot, and what is to be known of

@@ -10,6 +10,7 @@ const LOOKS = {
   computed: { colour: "computed", width: 1.6, dash: [6, 4] },
   before: { colour: "before", width: 1.2 },
   residual: { colour: "quiet", width: 1.2 },
+  faint: { colour: "faint", width: 1 },
   points: { colour: "measured", points: true },
   law: { colour: "computed", points: true },
 };
@@ -43,6 +44,12 @@ function link(own, plot) {
 function shown(value) {
   if (value === null || value === undefined) return "\u2013";
   return String(Number(value.toPrecision(4)));
+}
+
+/** A mark of a scale: long ones would reach into its name. */
+function mark(value) {
+  const isLong = value !== 0 && (Math.abs(value) < 1e-3 || Math.abs(value) >= 1e5);
+  return isLong ? Number(value.toPrecision(4)).toExponential() : shown(value);
 }
 
 function lookOf(curve, place) {
@@ -95,7 +102,7 @@ function axis(label, isLeft, height) {
     ticks: { stroke: () => colour("rule"), width: 1 },
     space: !isLeft ? 60 : height < LOW ? 14 : 28,
     values: (plot, ticks) => {
-      const words = ticks.map(tick => (tick === null ? "" : shown(tick)));
+      const words = ticks.map(tick => (tick === null ? "" : mark(tick)));
       if (isLeft) plot.root.dataset.marks = words.filter(Boolean).length;
       return words;
     },

@@ -2,10 +2,9 @@
 
 use super::balance::{BalanceCriterion, balance_picture, margin_cells};
 use super::cycle::{multipliers_picture, returns_picture, size};
-use crate::answer::ShownWithRun;
 use crate::answer::run::drawn_run;
 use crate::html::{Cell, Fact, Heading, HtmlTable, Page, Part, Row, Section};
-use crate::run::{GaitCurve, GaitPicture, replay};
+use crate::run::{GaitCurve, GaitPicture, ShownWithRun, replay};
 use denavit_simulate::scenario::Scenario;
 use denavit_walk::balance::Course;
 use denavit_walk::poincare::PoincareAnalysis;

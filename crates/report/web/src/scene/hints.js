@@ -66,16 +66,19 @@ export class Hints {
     const { clientWidth: wide, clientHeight: tall } = this.stage.canvas;
     const taken = [];
     const side = new Vector3().setFromMatrixColumn(this.stage.camera.matrixWorld, 0)
-      .multiplyScalar(2 * this.robot.radius);
+      .multiplyScalar(1.6 * this.robot.radius);
+    const up = new Vector3().setFromMatrixColumn(this.stage.camera.matrixWorld, 1)
+      .multiplyScalar(2.2 * this.robot.radius);
     this.labels.forEach((label, link) => {
       if (!label) return;
       const own = this.data.links[link];
       // the name of a link is that of its joint: it stands where the joint is
       const isJoint = own.is_joint && !own.is_marked || own.is_joint_marked;
       const at = isJoint ? this.robot.seats[link][0] : this.poses[link][0];
-      // beside what is drawn there
+      // beside and above what is drawn there
       const wider = own.is_joint_marked ? 1.5 : 1;
-      const seen = at.clone().addScaledVector(side, wider).project(this.stage.camera);
+      const seen = at.clone().addScaledVector(side, wider)
+        .addScaledVector(up, wider).project(this.stage.camera);
       const middle = at.clone().project(this.stage.camera);
       label.hidden = seen.z > 1 || Math.abs(middle.x) > 1 || Math.abs(middle.y) > 1;
       if (label.hidden) return;

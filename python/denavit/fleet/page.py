@@ -48,7 +48,10 @@ svg{width:100%;height:2.6rem;display:block;background:var(--stripe);border-radiu
 polyline{fill:none;stroke:var(--quiet);stroke-width:1}circle{fill:var(--accent)}
 path{stroke:var(--accent);stroke-width:1}
 circle.changed{fill:var(--bad)}path.changed{stroke:var(--bad)}
-.wide{overflow-x:auto}table{border-collapse:collapse;font-size:.9rem}
+.wide{overflow-x:auto;background:
+linear-gradient(90deg,transparent,var(--ground) 60%) right/4rem 100% no-repeat local,
+linear-gradient(270deg,color-mix(in srgb,var(--accent) 55%,transparent),transparent)
+right/1.2rem 100% no-repeat scroll}table{border-collapse:collapse;font-size:.9rem}
 th,td{padding:.2rem .7rem;border-bottom:1px solid var(--rule);text-align:left;white-space:nowrap}
 tr>:first-child{position:sticky;left:0;background:var(--ground)}
 .number{text-align:right;font-variant-numeric:tabular-nums}tbody th{font-weight:500}

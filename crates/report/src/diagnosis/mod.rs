@@ -25,7 +25,7 @@ use std::f64::consts::LN_10;
 use windows::{windows, windows_table};
 pub(crate) use words::closes;
 pub use words::verdict_paragraph;
-use words::{reasons, verdict};
+use words::{in_words, reasons, verdict};
 
 /// Joints whose torques are drawn, at most.
 const DRAWN: usize = 3;
@@ -295,7 +295,7 @@ impl DiagnosisPage<'_> {
             ];
             Row { cells, is_marked: false }
         });
-        let caption = format!("Parameters of {}.", self.candidates[one.candidate].name());
+        let caption = format!("Parameters of {}.", in_words(&self.candidates[one.candidate]));
         HtmlTable { caption, columns, rows: rows.collect() }
     }
 
@@ -362,7 +362,7 @@ impl DiagnosisPage<'_> {
             let winner = (step.added, step.log_odds, true);
             let others = step.runners_up.iter().map(|&(other, odds)| (other, odds, false));
             let rows = std::iter::once(winner).chain(others).map(|(candidate, log, is_marked)| {
-                let name = Cell::text(self.candidates[candidate].name());
+                let name = Cell::text(in_words(&self.candidates[candidate]));
                 let tens = log / LN_10;
                 let odds = Cell::number(tens, format!("{tens:.1}"));
                 Row { cells: vec![name, odds], is_marked }
@@ -377,7 +377,7 @@ impl DiagnosisPage<'_> {
         format!(
             "Round {}: {} {}. Its odds are {}, and it does {} of the torque of its joint.",
             round + 1,
-            self.candidates[step.added].name(),
+            in_words(&self.candidates[step.added]),
             if step.is_taken { "was taken" } else { "was not taken" },
             odds(step.log_odds),
             percent(step.size),

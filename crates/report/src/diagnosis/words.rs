@@ -35,7 +35,7 @@ fn verdict_sentence(found: &Diagnosis, candidates: &[Candidate]) -> String {
     for (is_named, word) in [(true, "Found"), (false, "Nearest to what has no name")] {
         let all = found.effects.iter().filter(|one| one.is_named == is_named);
         let names = all.map(|one| &candidates[one.candidate]);
-        let names: Vec<String> = names.map(|own| format!("{} at {}", own.title, own.at)).collect();
+        let names: Vec<String> = names.map(in_words).collect();
         if !names.is_empty() {
             text += &format!(" {word}: {}.", names.join("; "));
         }
@@ -122,10 +122,15 @@ fn looks_like(found: &Diagnosis) -> Option<String> {
     }
 }
 
+/// An effect of the catalogue, and where it is.
+pub(super) fn in_words(own: &Candidate) -> String {
+    format!("{} at {}", own.title, own.at)
+}
+
 /// How much of the gap an effect closes, in words; none where the other terms close as much
 /// without it.
 pub(crate) fn closes(one: &FoundEffect) -> Option<String> {
-    (one.share > LEAST_SHARE).then(|| percent(one.share))
+    (one.share > LEAST_SHARE).then(|| percent(one.share.min(1.0)))
 }
 
 #[cfg(test)]

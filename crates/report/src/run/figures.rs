@@ -127,6 +127,8 @@ pub(super) struct Strip {
 const LEAST_CELL: f64 = 72.0;
 /// Room below the figures for their times [px].
 const CAPTION: f64 = 26.0;
+/// One figure shows no motion.
+const LEAST_FIGURES: usize = 3;
 const MOST_FIGURES: usize = 10;
 
 impl Strip {
@@ -137,7 +139,7 @@ impl Strip {
         let Some([low, high, half]) = few.extent(&few.camera()) else { return few };
         let tall = (size[1] - CAPTION).min(size[0] * (high - low).max(1e-6) / (2.0 * half));
         let cell = (2.3 * half * tall / (high - low).max(1e-6)).max(LEAST_CELL);
-        let count = ((size[0] / cell) as usize).clamp(1, MOST_FIGURES);
+        let count = ((size[0] / cell) as usize).clamp(LEAST_FIGURES, MOST_FIGURES);
         Self::with(plant, rows, count)
     }
 

@@ -23,7 +23,6 @@ Examples:
   denavit inspect tulip
   denavit inspect puma560 --svg puma560.svg
   denavit inspect puma560 --html puma560.html
-  denavit inspect robot.urdf --meshes robot_description --html robot.html
   denavit inspect scara --json")]
 pub(crate) struct Arguments {
     #[command(flatten)]

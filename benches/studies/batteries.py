@@ -30,9 +30,14 @@ from denavit.errors import Error, Fault
 FOREIGN = Path(__file__).parents[1] / "foreign"
 
 
-@lru_cache
 def _digest(path: str) -> str:
-    """Which build answered."""
+    """Which build answered, as its file is now."""
+    found = Path(path).stat()
+    return _digest_of(path, found.st_size, found.st_mtime_ns)
+
+
+@lru_cache
+def _digest_of(path: str, *_: int) -> str:
     return hashlib.sha256(Path(path).read_bytes()).hexdigest()[:12]
 
 

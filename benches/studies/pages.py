@@ -155,9 +155,10 @@ def section(name: str) -> list[str]:
     rows = studies.read_part(file).to_pylist()
     good = [row for row in rows if not row["failure"]]
     lines = ["", f"## {title}", "", says, ""]
-    lines += figures(good)
-    failed = len(rows) - len(good)
-    lines += ["", f"{len(rows)} rows, {failed} without an answer (`benches/studies/{name}.json`)."]
+    lines += figures(good) if good else ["No row has an answer."]
+    failed, count = len(rows) - len(good), studies.read_study(HERE / f"{name}.json").count
+    told = f"{len(rows)} rows" if len(rows) == count else f"{len(rows)} of {count} rows"
+    lines += ["", f"{told}, {failed} without an answer (`benches/studies/{name}.json`)."]
     return lines
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,17 @@ from ._options import Columns, PathLike
 from .errors import _argument
 from .simulate import Run
 
-Log = PathLike | Run | Mapping[str, Any]
+
+@dataclass(frozen=True)
+class Table:
+    """A log that was read elsewhere: what its file is called and says of itself, and its columns."""
+
+    name: str
+    header: list[tuple[str, str]]
+    columns: dict[str, Array]
+
+
+Log = PathLike | Run | Mapping[str, Any] | Table
 """A log: a file, a run, or a dict (or a data frame) of columns: ``t``, ``q_JOINT``, ``tau_JOINT``
 and, if there are any, ``qd_JOINT``, ``f_CONTACT_x|y|z``. A named index of a data frame is a column,
 too."""
@@ -42,14 +53,23 @@ def given(**options: Any) -> tuple[list[str], list[Columns]]:
                 named = [(column, _column(name, column, values)) for column, values in columns]
                 # the name stands for what is in memory
                 arguments.append(name)
-                memory.append((option, at, name, [], named))
+                told = (log.name, log.header) if isinstance(log, Table) else (name, [])
+                memory.append((option, at, *told, named))
     return arguments, memory
+
+
+def header_of(schema: Any) -> list[tuple[str, str]]:
+    """What a Parquet file says of itself, by its schema in Arrow."""
+    said = sorted((schema.metadata or {}).items())
+    return [(key.decode(), value.decode()) for key, value in said
+            if key not in (b"pandas", b"ARROW:schema")]  # fmt: skip
 
 
 def for_workers(**options: Any) -> tuple[list[str], list[Columns]]:
     """The same for processes that run elsewhere: paths of files are whole."""
     arguments, memory = given(**options)
-    named = {f"--{option}" for option in options} | {one[2] for one in memory}
+    named = {f"--{option}" for option in options}
+    named |= {name for one in memory for name in (one[0], f"{one[0]}[{one[1]}]")}
     return [one if one in named else str(Path(one).resolve()) for one in arguments], memory
 
 
@@ -73,6 +93,8 @@ def unpacked(content: bytes, names: list[list[Any]]) -> list[Columns]:
 
 def _columns(log: Any) -> Iterator[tuple[str, Any]] | None:
     """Names and values of what is in memory; None of a file."""
+    if isinstance(log, Table):
+        return iter(log.columns.items())
     if isinstance(log, Run):
         return zip(log.columns, log.values.T)
     if isinstance(log, Mapping):

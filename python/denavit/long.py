@@ -62,9 +62,7 @@ class _Table:
         self.names = [name for name, kind in self.kinds.items() if kind.startswith(NUMBERS)]
         if len(self.kinds) < len(self.file.schema_arrow):
             raise Error([Fault(str(path), None, None, "has two columns of one name", None)])
-        said = self.file.schema_arrow.metadata or {}
-        self.header = [(key.decode(), value.decode()) for key, value in sorted(said.items())
-                       if key not in (b"pandas", b"ARROW:schema")]  # fmt: skip
+        self.header = _logs.header_of(self.file.schema_arrow)
         self.epochs: dict[str, int] = {}
         if self.rows == 0:
             raise Error([Fault(str(path), None, None, "has no rows", None)])
@@ -139,7 +137,7 @@ def condensed(case: studies.Case) -> studies.Row:
         model = _options.file_of(_model(case.inputs["model"]), "model", inside)
         for name in case.inputs.keys() & {"plan", "columns"}:
             (inside / f"{name}.json").write_bytes(case.inputs[name])
-        judges = _logs.unpacked(case.inputs["validate"], case.options["judges"])
+        judges = _logs.unpacked(case.inputs["validate"], case.options["judges"][0])
         for stretch in range(first, end):
             start, stop = plan["rows_of_stretches"][stretch]
             given, memory = _given(table, start, stop)
@@ -215,7 +213,7 @@ def identify_long(
             "log": str(table.path),
             "stamp": list(_stamp(table.path)),
             "arguments": arguments,
-            "judges": names,
+            "judges": [names, [_stamp(Path(one)) for one in judged if Path(one).exists()]],
         }
         study = studies.Study("long", condensed, plan["pieces"], inputs=inputs, options=given)
         (inside / "plan.json").write_bytes(inputs["plan"])

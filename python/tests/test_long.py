@@ -210,3 +210,19 @@ def test_a_part_of_the_rest_does_not_judge(columns, log, tmp_path):
         assert not found.is_good
         told = [one for one in found.remarks if "arm.parquet, rows" in one]
         assert len(told) == 1 and name in told[0], found.remarks
+
+
+def test_rows_of_other_judges_are_not_taken(columns, log, tmp_path):
+    """A log for validation is replaced by another one, while rows are kept."""
+    judge, part = tmp_path / "judge.csv", tmp_path / "rows.parquet"
+
+    def judged(first):
+        part_of = [values[first : first + 50_000] for values in columns.values()]
+        np.savetxt(judge, np.column_stack(part_of), delimiter=",", header=",".join(columns),
+                   comments="", fmt="%.12g")  # fmt: skip
+        options = FILTERED | {"head": HEAD, "part": part}
+        return identify_long(example.NOMINAL, log, str(judge), **options)
+
+    assert not judged(400_000).is_good
+    with pytest.raises(Error, match="study"):
+        judged(200_000)

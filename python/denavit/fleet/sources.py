@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from .. import _logs
 from .._arrays import Array
 from ..errors import Error, Fault
 from ..studies.parts import arrow
@@ -21,8 +22,8 @@ from ..studies.parts import arrow
 KINDS = (".csv", ".parquet", ".mcap")
 """Endings of logs in a folder."""
 
-ReadLog = str | dict[str, Array]
-"""A log as the use cases take it: a path, or columns."""
+ReadLog = str | _logs.Table
+"""A log as the use cases take it: a path, or a table."""
 
 
 class FleetError(Error):
@@ -136,7 +137,7 @@ def _of_manifest(system: Any, place: str, path: str) -> list[RobotNight]:
     judging = table.get("validate") or [None] * len(table["robot"])
     seen: set[tuple[str, str]] = set()
     for number, ((robot, night, train), validate) in enumerate(zip(rows, judging), start=1):
-        if None in (robot, night, train) or not str(robot) or not str(night):
+        if None in (robot, night) or not str(robot) or not str(night) or not _names(train):
             faults.append(fault(place, f"row {number} has no robot, night or train"))
             continue
         key = str(robot), str(night)
@@ -171,7 +172,10 @@ def _table(system: Any, place: str, path: str) -> dict[str, list[Any]]:
     try:
         with system.open_input_file(path) as file:
             if path.lower().endswith(".csv"):
-                table = pyarrow.csv.read_csv(io.BytesIO(file.read()))
+                # robots may be called 007
+                texts = dict.fromkeys(("robot", "night", "train", "validate"), pa.string())
+                how = pyarrow.csv.ConvertOptions(column_types=texts)
+                table = pyarrow.csv.read_csv(io.BytesIO(file.read()), convert_options=how)
             else:
                 table = pa.parquet.read_table(file)
     except (pa.ArrowException, OSError) as error:
@@ -230,7 +234,8 @@ def _fetched(system: Any, base: str, name: str, inside: Path) -> ReadLog:
     try:
         if is_parquet:
             with system.open_input_file(path) as file:
-                return columns(pa.parquet.read_table(file))
+                table = pa.parquet.read_table(file)
+                return _logs.Table(name, _logs.header_of(table.schema), columns(table))
         if is_local:
             return path
         if PurePosixPath(name).is_absolute() or ".." in PurePosixPath(name).parts:
@@ -247,37 +252,43 @@ def _fetched(system: Any, base: str, name: str, inside: Path) -> ReadLog:
 
 
 def columns(table: Any) -> dict[str, Array]:
-    """The columns of numbers of a table."""
-    pa = arrow()
-    kinds = (pa.types.is_floating, pa.types.is_integer)
-    return {
-        name: column.to_numpy().astype(np.float64)
-        for name, column in zip(table.column_names, table.columns)
-        if any(kind(column.type) for kind in kinds)
-    }
+    """The columns of numbers of a table; times of a clock are seconds since the first one."""
+    types, found = arrow().types, {}
+    for name, column in zip(table.column_names, table.columns):
+        if types.is_floating(column.type) or types.is_integer(column.type):
+            found[name.strip()] = column.to_numpy().astype(np.float64)
+        elif types.is_timestamp(column.type) and len(column) and not column.null_count:
+            nanoseconds = column.cast("timestamp[ns]").cast("int64").to_numpy()
+            found[name.strip()] = (nanoseconds - nanoseconds[0]) / 1e9
+    return found
 
 
 def _cut(logs: list[ReadLog], name: str) -> list[list[ReadLog]]:
     """The only log of a night as two: its first half, and its second."""
-    log = logs[0]
+    log, *others = logs
+    if others:
+        hint = "name those that judge as `validate`"
+        raise FleetError([fault(name, "stands beside others, and no log judges", hint)])
     if isinstance(log, str):
         if not name.lower().endswith(".csv"):
             hint = "give two logs of the night: train and validate"
             raise FleetError([fault(name, "only tables can be cut in two", hint)])
         log = _read_csv(log, name)
-    half = len(next(iter(log.values()), ())) // 2
-    first: ReadLog = {column: values[:half] for column, values in log.items()}
-    second: ReadLog = {column: values[half:] for column, values in log.items()}
-    return [[first], [second]]
+    half = len(next(iter(log.columns.values()), ())) // 2
+    parts = slice(None, half), slice(half, None)
+    cut = [{column: values[part] for column, values in log.columns.items()} for part in parts]
+    return [[_logs.Table(name, log.header, part)] for part in cut]
 
 
-def _read_csv(path: str, name: str) -> dict[str, Array]:
+def _read_csv(path: str, name: str) -> _logs.Table:
     pa = arrow()
     import pyarrow.csv
 
     try:
         lines = Path(path).read_bytes().splitlines(keepends=True)
         text = b"".join(line for line in lines if not line.startswith(b"#"))
-        return columns(pyarrow.csv.read_csv(io.BytesIO(text)))
-    except (pa.ArrowException, OSError) as error:
+        said = [line[1:].decode().partition(":") for line in lines if line.startswith(b"#")]
+        header = [(key.strip(), value.strip()) for key, _, value in said]
+        return _logs.Table(name, header, columns(pyarrow.csv.read_csv(io.BytesIO(text))))
+    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise FleetError([fault(name, f"cannot be read: {error}")]) from None

@@ -205,7 +205,11 @@ def read_part(path: str | Path) -> pa.Table:
     """The rows of a part, or of merged parts."""
     path = Path(path)
     _said(path)
-    return arrow().parquet.read_table(path)
+    pa = arrow()
+    try:
+        return pa.parquet.read_table(path)
+    except (pa.ArrowException, OSError) as error:
+        raise wrong(path, f"is corrupt: {error}", "remove it, and run its range again") from None
 
 
 def missing(paths: Iterable[str | Path], study: Study) -> list[tuple[int, int]]:
@@ -243,7 +247,7 @@ def merge(paths: Iterable[str | Path], out: str | Path) -> int:
             raise wrong(following, f"has indices that {path} has, too")
         if start > stop:
             raise wrong(following, f"no part has the indices {stop} to {start}", "run them first")
-    table = pa.concat_tables([pa.parquet.read_table(path) for *_, path in parts])
+    table = pa.concat_tables([read_part(path) for *_, path in parts])
     said = dict(pa.parquet.read_schema(parts[0][3]).metadata)
     said |= {b"start": str(parts[0][1]).encode(), b"stop": str(parts[-1][2]).encode()}
     write_table(Path(out), table.combine_chunks().replace_schema_metadata(said))

@@ -82,15 +82,16 @@ impl Conditioned {
                 if (count as f64) < OVERLAP * shortest {
                     return false;
                 }
-                let inside = |pair: &Pair<'_>| rms_about_mean(&pair.other[first..end]);
-                let moves = |pair: &Pair<'_>| inside(pair) * SAME > MOVES * pair.most;
-                if !positions.iter().any(moves) {
-                    return false; // all rests look alike
-                }
                 let both = || positions.iter().chain(&torques);
                 let step = count.div_ceil(FIRST);
-                both().all(|pair| pair.is_same(shift, (first..end).step_by(step)))
-                    && both().all(|pair| pair.is_same(shift, first..end))
+                // few places first: where a robot dwells, many rows are near the anchor
+                if !both().all(|pair| pair.is_same(shift, (first..end).step_by(step))) {
+                    return false;
+                }
+                let inside = |pair: &Pair<'_>| rms_about_mean(&pair.other[first..end]);
+                let moves = |pair: &Pair<'_>| inside(pair) * SAME > MOVES * pair.most;
+                // all rests look alike
+                positions.iter().any(moves) && both().all(|pair| pair.is_same(shift, first..end))
             })
         })
     }

@@ -107,7 +107,7 @@ impl LongLog<'_> {
     ) -> Result<PieceRows, Error> {
         let mut watched = Watched::new(observer);
         let model = self.model()?;
-        plan.check(&model, self.options, &self.name())?;
+        plan.check(&model, self.options, self.logs)?;
         let mut piece = plan.piece_of(stretch, before).map_err(|why| self.wrong(why))?;
         let condenser = Condenser::new(self, &model, plan, &mut watched)?;
         condenser.add(&mut piece, stretch, &self.logs.train[0], &mut watched)?;
@@ -126,7 +126,7 @@ impl LongLog<'_> {
     ) -> Result<Vec<PieceRows>, Error> {
         let mut watched = Watched::new(observer);
         let model = self.model()?;
-        plan.check(&model, self.options, &self.name())?;
+        plan.check(&model, self.options, self.logs)?;
         if pieces.is_empty() || pieces.end > plan.pieces() {
             return Err(self.wrong(format!("there are pieces 0 to {}", plan.pieces() - 1)));
         }
@@ -147,7 +147,7 @@ impl LongLog<'_> {
     ) -> Result<Identified, Error> {
         let mut watched = Watched::new(observer);
         let model = self.model()?;
-        plan.check(&model, self.options, &self.name())?;
+        plan.check(&model, self.options, self.logs)?;
         let logs = match self.logs.train[0] {
             LogSource::File(_) => self.head_logs(&model)?,
             LogSource::Memory { .. } => self.logs.clone(),

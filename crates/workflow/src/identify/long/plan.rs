@@ -5,9 +5,10 @@ use super::super::clock::Clock;
 use super::super::{Head, IdentifyOptions};
 use super::reading::Survey;
 use crate::error::{Cause, Error};
+use crate::logs::{LogSource, Logs};
 use denavit_identify::estimate::long::{LongRows, RowRule, pieces};
 use denavit_measure::JointIndex;
-use denavit_measure::condition::{Conditioning, Filter, Stretches};
+use denavit_measure::condition::{Conditioned, Conditioning, Filter, Stretches};
 use denavit_plants::regression::RegressionModel;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -33,6 +34,8 @@ pub struct LongPlan {
     pub(super) position_noise: Vec<f64>,
     /// Which rows these are of: the parameters that are found, and what their columns depend on.
     identifies: String,
+    /// Names the head by its signals.
+    head: String,
     stretches: usize,
 }
 
@@ -56,6 +59,7 @@ pub struct PieceRows {
 struct PlanFile {
     format: String,
     identifies: String,
+    head: String,
     rows: usize,
     start_s: f64,
     step_s: f64,
@@ -85,12 +89,28 @@ struct WidenedFile {
     times: f64,
 }
 
+/// Names bytes. FNV-1a: it tells apart what is mixed up, and keeps nobody out.
+fn name_of(bytes: impl Iterator<Item = u8>) -> String {
+    let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    });
+    format!("{hash:016x}")
+}
+
+/// Names a log by its positions and torques.
+fn name_of_log(log: &Conditioned) -> String {
+    let torques = log.torque.iter().flatten();
+    let numbers = log.q.iter().chain(torques).flatten();
+    name_of(numbers.flat_map(|number| number.to_bits().to_le_bytes()))
+}
+
 /// What rows depend on beside their log.
-fn identifies(model: &RegressionModel, options: &IdentifyOptions) -> String {
+fn identifies(model: &RegressionModel, options: &IdentifyOptions, logs: &Logs) -> String {
+    let judges: Vec<String> = logs.held_out.iter().map(LogSource::to_string).collect();
     let names: Vec<&str> = model.listed.iter().map(|one| one.name.as_str()).collect();
     let IdentifyOptions { slow, conditions, resolution, .. } = options;
     format!(
-        "{} of {}; {:?}, {slow:?}, {:?}, {resolution:?}",
+        "{} of {}; {:?}, {slow:?}, {:?}, {resolution:?}; judged by {judges:?}",
         names.join(", "),
         model.model,
         model.law,
@@ -114,7 +134,8 @@ impl LongPlan {
             how,
             rule: head.found.estimate.row_rule(work.model, &head.read.train, &head.how),
             position_noise: head.read.position_noise.clone(),
-            identifies: identifies(work.model, work.options),
+            identifies: identifies(work.model, work.options, work.logs),
+            head: head.read.train.first().map(name_of_log).unwrap_or_default(),
             stretches: 0,
         };
         plan.stretches = plan.cut().map_or(0, |cut| cut.count());
@@ -174,9 +195,9 @@ impl LongPlan {
         &self,
         model: &RegressionModel,
         options: &IdentifyOptions,
-        name: &str,
+        logs: &Logs,
     ) -> Result<(), Error> {
-        let (own, joints) = (identifies(model, options), model.joints.len());
+        let (own, joints) = (identifies(model, options, logs), model.joints.len());
         let is_joint = |one: &(JointIndex, f64)| one.0.0 < joints;
         let why = if own != self.identifies {
             format!("the plan is for {}, and this is {own}", self.identifies)
@@ -185,17 +206,13 @@ impl LongPlan {
         } else {
             return Ok(());
         };
-        Err(Cause::Long(name.to_owned(), why).into())
+        let name = logs.train.first().map_or_else(String::new, LogSource::to_string);
+        Err(Cause::Long(name, why).into())
     }
 
     /// Names the plan by all that it says.
     pub(super) fn key(&self) -> String {
-        let text = self.to_json().to_string();
-        // FNV-1a: it tells plans apart that are mixed up, and keeps nobody out
-        let hash = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-        });
-        format!("{hash:016x}")
+        name_of(self.to_json().to_string().bytes())
     }
 
     /// Rows of a piece that has none yet.
@@ -226,6 +243,7 @@ impl LongPlan {
         json!(PlanFile {
             format: PLAN.to_owned(),
             identifies: self.identifies.clone(),
+            head: self.head.clone(),
             rows: self.rows,
             start_s: self.start_s,
             step_s: self.step_s,
@@ -288,14 +306,21 @@ impl LongPlan {
             },
             position_noise: file.position_noise,
             identifies: file.identifies,
+            head: file.head,
             stretches: file.stretches,
         };
         if !is_sound {
             return Err(failed("has numbers that no plan has".to_owned()));
         }
-        plan.cut().map_err(failed)?;
+        // lists of the plan are as long as the file's, or it has none
+        let stretches = plan.cut().map_err(failed)?.count();
+        let has_lists = plan.stretches == stretches
+            && file.rows_of_stretches.len() == stretches
+            && file.stretches_of_pieces.len() == plan.pieces();
         // what follows from the rest stands there for others
-        match serde_json::from_str::<Value>(text).is_ok_and(|given| given == plan.to_json()) {
+        let is_given =
+            || serde_json::from_str::<Value>(text).is_ok_and(|given| given == plan.to_json());
+        match has_lists && is_given() {
             true => Ok(plan),
             false => Err(failed("contradicts itself".to_owned())),
         }

@@ -19,7 +19,7 @@ from .simulate import Run
 
 @dataclass(frozen=True)
 class Table:
-    """A log that was read elsewhere: what its file is called and says of itself, and its columns."""
+    """A log that was read: what its file is called and says of itself, and its columns."""
 
     name: str
     header: list[tuple[str, str]]

@@ -41,6 +41,29 @@ fn run(directory: &Directory, words: &[&str], more: &[&str]) -> Run {
     run_in(&directory.path, &all)
 }
 
+/// A plan for pieces that are in `ab.jsonl` and `c.jsonl`: refused with another head, with judges
+/// that rows were not compared with, and if it claims more than its lists have.
+fn plans_of_others(directory: &Directory, mut claimed: Value) {
+    claimed["stretches"] = (1_u64 << 62).into();
+    fs::write(directory.path.join("claimed.json"), claimed.to_string()).expect("written");
+    let words = ["long", "condense", "--pieces", "0:1", "--plan", "claimed.json"];
+    let refused = run(directory, &words, &[]);
+    assert!(refused.stderr.contains("contradicts itself"), "{}", refused.stderr);
+    let text = fs::read_to_string(directory.path.join("log.csv")).expect("written");
+    let later: Vec<&str> = text.lines().take(1).chain(text.lines().skip(1000)).collect();
+    fs::write(directory.path.join("other.csv"), later.join("\n")).expect("written");
+    let more = ["--rows", "ab.jsonl", "c.jsonl", "--plan", "plan.json", "--head", "100000"];
+    let words = ["long", "estimate", "pendulum.json", "--filter", "20", "--train"];
+    for (log, judge, said) in [
+        ("other.csv", &[][..], "another head"),
+        ("log.csv", &["--validate", "other.csv"], "the plan is for"),
+    ] {
+        let words = [&words[..], &[log], judge, &more].concat();
+        let other = run_in(&directory.path, &words);
+        assert!(other.code == Some(2) && other.stderr.contains(said), "{}", other.stderr);
+    }
+}
+
 /// Three stretches, of which the first is the head's: the closed form's values, and the same bytes
 /// from pieces that were condensed apart.
 #[test]
@@ -68,13 +91,6 @@ fn pieces_give_the_values_of_the_closed_form_and_the_bytes_of_one_process() {
     let plan: Value = serde_json::from_str(&plan.stdout).expect("JSON");
     assert_eq!(plan["pieces"], 3);
     let of_plan = ["--plan", "plan.json"];
-    // a plan that claims more than its lists have
-    let mut claimed = plan.clone();
-    claimed["stretches"] = (1_u64 << 62).into();
-    fs::write(directory.path.join("claimed.json"), claimed.to_string()).expect("written");
-    let words = ["long", "condense", "--pieces", "0:1", "--plan", "claimed.json"];
-    let refused = run(&directory, &words, &[]);
-    assert!(refused.stderr.contains("contradicts itself"), "{}", refused.stderr);
     let mut rows = String::new();
     for (piece, name) in [("2:3", "c.jsonl"), ("0:2", "ab.jsonl")] {
         let condensed = run(&directory, &["long", "condense", "--pieces", piece], &of_plan);
@@ -97,20 +113,7 @@ fn pieces_give_the_values_of_the_closed_form_and_the_bytes_of_one_process() {
     fs::write(directory.path.join("cut.jsonl"), &rows[..rows.len() / 2]).expect("written");
     let cut = estimate(&["cut.jsonl"]);
     assert!(cut.code == code && cut.stderr.contains("cut.jsonl:"), "{}", cut.stderr);
-    // another head, and judges that rows were not compared with
-    let text = fs::read_to_string(directory.path.join("log.csv")).expect("written");
-    let later: Vec<&str> = text.lines().take(1).chain(text.lines().skip(1000)).collect();
-    fs::write(directory.path.join("other.csv"), later.join("\n")).expect("written");
-    let more = ["--rows", "ab.jsonl", "c.jsonl", "--plan", "plan.json", "--head", "100000"];
-    let words = ["long", "estimate", "pendulum.json", "--filter", "20", "--train"];
-    for (log, judge, said) in [
-        ("other.csv", &[][..], "another head"),
-        ("log.csv", &["--validate", "other.csv"], "the plan is for"),
-    ] {
-        let words = [&words[..], &[log], judge, &more].concat();
-        let other = run_in(&directory.path, &words);
-        assert!(other.code == code && other.stderr.contains(said), "{}", other.stderr);
-    }
+    plans_of_others(&directory, plan);
     // a plan for other rows
     let mut words = vec!["long", "condense", "--pieces", "0:1", "--skip-slow", "off"];
     words.extend(of_plan);

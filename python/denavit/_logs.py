@@ -61,8 +61,8 @@ def given(**options: Any) -> tuple[list[str], list[Columns]]:
 def header_of(schema: Any) -> list[tuple[str, str]]:
     """What a Parquet file says of itself, by its schema in Arrow."""
     said = sorted((schema.metadata or {}).items())
-    return [(key.decode(), value.decode()) for key, value in said
-            if key not in (b"pandas", b"ARROW:schema")]  # fmt: skip
+    said = [one for one in said if one[0] not in (b"pandas", b"ARROW:schema")]
+    return [(key.decode(errors="replace"), value.decode(errors="replace")) for key, value in said]
 
 
 def for_workers(**options: Any) -> tuple[list[str], list[Columns]]:

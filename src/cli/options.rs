@@ -30,7 +30,7 @@ pub(crate) struct EffectsOption {
 /// What links look like on a page.
 #[derive(Debug, Args)]
 pub(crate) struct ShapesOption {
-    /// Show this URDF's shapes on links of the same names; without it those of a model in URDF
+    /// Show this URDF's shapes on links of the same names; `inspect` takes those of a model in URDF
     #[arg(long, value_name = "URDF", requires = "html")]
     shapes: Option<PathBuf>,
     /// Folder of their meshes (STL, OBJ), or of their package; without it that of the URDF

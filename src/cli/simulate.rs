@@ -141,7 +141,8 @@ pub(super) fn run_kept(
     let window = arguments.window.filter(|[from, _]| *from < run.end.t_s);
     write_given(&arguments.svg, || drawn_run(&mut scenario, &run, window))?;
     if let Some(path) = &arguments.png {
-        write_whole(path, &png(&drawn_at(&mut scenario, &run, arguments.at)))?;
+        let picture = png(&drawn_at(&mut scenario, &run, arguments.at));
+        write_whole(path, &picture.map_err(|why| Failure::Library(why.into()))?)?;
     }
     let with = ShownWithRun { log: beside.as_ref(), shapes: shapes.as_ref() };
     let page = || run_page(&mut scenario, &run, &broken, with, env!("CARGO_PKG_VERSION")).render();

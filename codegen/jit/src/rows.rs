@@ -86,10 +86,10 @@ impl CompiledRows {
         ShapeMismatch::check("arguments", self.arguments.len(), arguments.len())?;
         ShapeMismatch::check("outputs", self.outputs.len(), outputs.len())?;
         for (&(name, width), argument) in self.arguments.iter().zip(arguments) {
-            ShapeMismatch::check(name, samples * width, argument.len())?;
+            ShapeMismatch::check(name, samples.saturating_mul(width), argument.len())?;
         }
         for (&width, output) in self.outputs.iter().zip(outputs.iter()) {
-            ShapeMismatch::check("an output", samples * width, output.len())?;
+            ShapeMismatch::check("an output", samples.saturating_mul(width), output.len())?;
         }
         let (blocks, rest) = (samples / self.lanes.count(), samples % self.lanes.count());
         if blocks > 0 {

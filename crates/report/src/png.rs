@@ -13,17 +13,20 @@ pub fn can_draw_png() -> Result<(), &'static str> {
 }
 
 /// An SVG of this package as PNG, of twice as many pixels. The same picture gives the same bytes.
-/// Nothing in a build that draws none.
-pub fn png(svg: &str) -> Vec<u8> {
-    #[cfg(feature = "png")]
-    let drawn = drawn(svg).expect("what this package draws is a picture of a small size");
-    #[cfg(not(feature = "png"))]
-    let drawn = svg.bytes().take(0).collect();
-    drawn
+///
+/// # Errors
+/// The build draws none, or the picture is too large.
+#[cfg(not(feature = "png"))]
+pub fn png(_: &str) -> Result<Vec<u8>, String> {
+    can_draw_png().map(|()| Vec::new()).map_err(str::to_owned)
 }
 
+/// An SVG of this package as PNG, of twice as many pixels. The same picture gives the same bytes.
+///
+/// # Errors
+/// The build draws none, or the picture is too large.
 #[cfg(feature = "png")]
-fn drawn(svg: &str) -> Result<Vec<u8>, String> {
+pub fn png(svg: &str) -> Result<Vec<u8>, String> {
     use resvg::{tiny_skia, usvg};
     use std::sync::Arc;
     const PIXELS: f32 = 2.0;
@@ -55,7 +58,7 @@ mod tests {
     #[test]
     fn a_build_without_png_says_how_to_get_one() {
         assert!(can_draw_png().expect_err("none").contains("--features png"));
-        assert!(png("<svg/>").is_empty());
+        assert!(png("<svg/>").expect_err("none").contains("--features png"));
     }
 
     /// Size of a picture, by its head.
@@ -71,11 +74,11 @@ mod tests {
         let labelled = |text: &str| {
             let mut svg = crate::svg::Svg::new([60.0, 20.0], "a");
             svg.label([2.0, 15.0], "start", "font-size=\"12\" fill=\"#000\"", text);
-            png(&svg.finish())
+            png(&svg.finish()).expect("a picture")
         };
         let [empty, word, bytes] = ["", "q \u{2212}1", "q \u{2212}1"].map(labelled);
         assert!(word.starts_with(b"\x89PNG") && size(&word) == [120, 40]);
         assert!(word != empty && word == bytes, "words are drawn, and always alike");
-        assert!(drawn("<svg").is_err());
+        assert!(png("<svg").is_err());
     }
 }

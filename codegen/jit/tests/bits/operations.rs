@@ -101,6 +101,8 @@ fn wrong_rows_are_refused() {
         assert!(call(8, 32, 32, 32).is_ok());
         assert!(code.evaluate(9, &[&given], &mut [&mut room]).is_err());
         assert!(code.evaluate(9, &[&given, &given], &mut []).is_err());
+        // four numbers a sample: their number wraps to none
+        assert!(code.evaluate(1 << 62, &[&[], &[]], &mut [&mut []]).is_err());
         // What is refused is not computed, and what is computed is within bounds.
         assert!(room[..32].iter().all(|&torque| torque != 7.0) && room[32..] == [7.0; 4]);
     }

@@ -2,7 +2,7 @@
 
 use crate::html::{Grade, VerdictLine};
 use crate::percent;
-use denavit_diagnose::{Candidate, Diagnosis, FoundEffect, Gaps, Verdict};
+use denavit_diagnose::{Candidate, Diagnosis, FoundEffect, Gaps, Structure, Verdict};
 
 /// What is left is noise up to this many times what noise alone leaves.
 const LIKE_NOISE: f64 = 1.5;
@@ -22,7 +22,7 @@ pub(super) fn verdict(found: &Diagnosis, candidates: &[Candidate]) -> VerdictLin
 
 fn verdict_sentence(found: &Diagnosis, candidates: &[Candidate]) -> String {
     let mut text = match found.verdict {
-        Verdict::NothingMissing => nothing_missing(&found.held_out, found.is_left_at_reversals),
+        Verdict::NothingMissing => nothing_missing(&found.held_out, Rest::of(found)),
         Verdict::Explained => {
             "What the model lacks is named, and explains the disagreement.".to_owned()
         }
@@ -43,15 +43,37 @@ fn verdict_sentence(found: &Diagnosis, candidates: &[Candidate]) -> String {
     text
 }
 
+/// What the torque that is left beyond noise looks like.
+#[derive(Clone, Copy, Debug)]
+enum Rest<'a> {
+    /// A function of the motion, which explains most of it at a joint.
+    Physics(&'a Structure),
+    /// A disturbance; a function of the motion explains some of it.
+    Disturbance(Option<&'a Structure>),
+    /// What is not looked at: most is left where drives turn around or rest.
+    Reversals,
+}
+
+impl<'a> Rest<'a> {
+    fn of(found: &'a Diagnosis) -> Self {
+        match found.structures.iter().max_by(|a, b| a.share.total_cmp(&b.share)) {
+            Some(one) if one.share > 0.5 => Self::Physics(one),
+            None if found.is_left_at_reversals => Self::Reversals,
+            best => Self::Disturbance(best),
+        }
+    }
+}
+
 /// What it means that nothing is missing where so much is left.
-fn nothing_missing(held_out: &Gaps, is_left_at_reversals: bool) -> String {
+fn nothing_missing(held_out: &Gaps, rest: Rest<'_>) -> String {
     let Gaps { after, floor, .. } = held_out;
     if beyond_noise(held_out).is_none() {
         return "Nothing is missing: what is left is noise.".to_owned();
     }
-    let what = match is_left_at_reversals {
-        true => "most of it where drives turn around or rest",
-        false => "and it looks like a disturbance",
+    let what = match rest {
+        Rest::Physics(_) => "and it looks like physics without a name",
+        Rest::Disturbance(_) => "and it looks like a disturbance",
+        Rest::Reversals => "most of it where drives turn around or rest",
     };
     let [left, noise] = [after.all, floor.all].map(percent);
     format!(
@@ -99,27 +121,24 @@ pub(super) fn reasons(found: &Diagnosis) -> String {
 /// Whether what is left beyond noise looks like physics or like a disturbance.
 fn looks_like(found: &Diagnosis) -> Option<String> {
     let share = percent(beyond_noise(&found.held_out)?);
-    let best = found.structures.iter().max_by(|a, b| a.share.total_cmp(&b.share));
-    match (found.verdict, best) {
-        (Verdict::CannotTell, _) => None,
-        (_, Some(one)) if one.share > 0.5 => Some(format!(
-            "The {share} of the torque beyond noise looks like physics: a formula of the motion \
-             explains {} of the squares that {} leaves.",
-            percent(one.share),
-            one.at
-        )),
-        (_, Some(one)) => Some(format!(
-            "The {share} of the torque beyond noise looks like a disturbance, more than like \
-             physics: the best formula of the motion explains {} of the squares that {} leaves.",
-            percent(one.share),
-            one.at
-        )),
-        (_, None) if found.is_left_at_reversals => None,
-        (_, None) => Some(format!(
-            "The {share} of the torque beyond noise looks like a disturbance: no formula of the \
-             motion is found in it."
-        )),
+    if found.verdict == Verdict::CannotTell {
+        return None;
     }
+    let explains = |one: &Structure| {
+        format!("explains {} of the squares that {} leaves", percent(one.share), one.at)
+    };
+    let what = match Rest::of(found) {
+        Rest::Physics(one) => format!("physics: a formula of the motion {}", explains(one)),
+        Rest::Disturbance(Some(one)) => format!(
+            "a disturbance, more than like physics: the best formula of the motion {}",
+            explains(one)
+        ),
+        Rest::Disturbance(None) => {
+            "a disturbance: no formula of the motion is found in it".to_owned()
+        }
+        Rest::Reversals => return None,
+    };
+    Some(format!("The {share} of the torque beyond noise looks like {what}."))
 }
 
 /// An effect of the catalogue, and where it is.
@@ -146,14 +165,16 @@ mod tests {
 
     #[test]
     fn nothing_missing_says_so_of_noise_alone() {
-        let said = |after, floor, at_reversals| nothing_missing(&gaps(after, floor), at_reversals);
-        assert_eq!(said(0.0021, 0.0017, false), "Nothing is missing: what is left is noise.");
+        let said = |after, floor, rest| nothing_missing(&gaps(after, floor), rest);
+        let disturbance = Rest::Disturbance(None);
+        assert_eq!(said(0.0021, 0.0017, disturbance), "Nothing is missing: what is left is noise.");
         let disturbed = "Nothing of the catalogue is missing: 2.11 % of the torque is left where \
                          noise alone leaves 0.17 %, and it looks like a disturbance.";
-        assert_eq!(said(0.0211, 0.0017, false), disturbed);
+        assert_eq!(said(0.0211, 0.0017, disturbance), disturbed);
         assert!(
-            said(0.0211, 0.0017, true).ends_with("most of it where drives turn around or rest.")
+            said(0.0211, 0.0017, Rest::Reversals)
+                .ends_with("most of it where drives turn around or rest.")
         );
-        assert!(said(0.004, 0.0, false).contains("0.40 % of the torque"));
+        assert!(said(0.004, 0.0, disturbance).contains("0.40 % of the torque"));
     }
 }

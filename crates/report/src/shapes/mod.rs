@@ -9,7 +9,7 @@ use crate::html::base64;
 use crate::space::Vec3;
 use denavit_workflow::{DrawnForm, LookOfLink, Shapes};
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use thin::{Thinned, thinned};
 
 /// Triangles of a page: about 800 kB.
@@ -54,14 +54,16 @@ impl Looks {
         let mut looks = Self { remarks: shapes.remarks.clone(), ..Self::default() };
         looks.is_whole = looks.remarks.is_empty();
         let mut soups: Vec<(i64, Vec<Triangle>)> = Vec::new();
-        let mut unknown: BTreeMap<&str, ()> = BTreeMap::new();
+        let mut unknown = BTreeSet::new();
         let mut room = MOST_READ;
         for one in &shapes.shapes {
             let link = match one.shape.frame.as_deref() {
                 None => Some(number("base").unwrap_or(-1)),
                 Some(name) => {
                     let found = number(name);
-                    found.is_none().then(|| unknown.insert(name, ()));
+                    if found.is_none() {
+                        unknown.insert(name);
+                    }
                     found
                 }
             };
@@ -75,7 +77,7 @@ impl Looks {
             }
         }
         if !unknown.is_empty() {
-            let names: Vec<&str> = unknown.into_keys().take(5).collect();
+            let names: Vec<&str> = unknown.into_iter().take(5).collect();
             looks.miss(format!(
                 "the model has no link {}: its shapes are left out",
                 names.join(", ")

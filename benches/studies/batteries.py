@@ -4,7 +4,9 @@
     python -m denavit study run blind.json --ray auto -o blind.parquet
     python benches/studies/batteries.py blind.parquet
 
-The study files name ``batteries:blind`` or ``batteries:foreign`` and, as options, the programs.
+The study files name ``batteries:blind`` or ``batteries:foreign`` and, as options, the programs, by
+paths from where the study is run: ``target/release`` of the repository, and for the foreign bench
+``foreign/generator``, its folder, and ``foreign/venv``, an environment as benches/foreign/run makes.
 The second command prints the figures of a Parquet file as Markdown, for docs/evidence.
 """
 

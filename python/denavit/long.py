@@ -137,7 +137,7 @@ def condensed(case: studies.Case) -> studies.Row:
         model = _options.file_of(_model(case.inputs["model"]), "model", inside)
         for name in case.inputs.keys() & {"plan", "columns"}:
             (inside / f"{name}.json").write_bytes(case.inputs[name])
-        judges = _logs.unpacked(case.inputs["validate"], case.options["judges"][0])
+        judges = _logs.unpacked(case.inputs["validate"], case.options["judges"])
         for stretch in range(first, end):
             start, stop = plan["rows_of_stretches"][stretch]
             given, memory = _given(table, start, stop)
@@ -213,7 +213,8 @@ def identify_long(
             "log": str(table.path),
             "stamp": list(_stamp(table.path)),
             "arguments": arguments,
-            "judges": [names, [_stamp(Path(one)) for one in judged if Path(one).exists()]],
+            "judges": names,
+            "judge_stamps": [_stamp(Path(one)) for one in judged if Path(one).exists()],
         }
         study = studies.Study("long", condensed, plan["pieces"], inputs=inputs, options=given)
         (inside / "plan.json").write_bytes(inputs["plan"])

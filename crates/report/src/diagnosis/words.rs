@@ -4,10 +4,12 @@ use crate::html::{Grade, VerdictLine};
 use crate::percent;
 use denavit_diagnose::{Candidate, Diagnosis, FoundEffect, Gaps, Structure, Verdict};
 
-/// What is left is noise up to this many times what noise alone leaves.
+/// What is left is called noise up to this many times what noise alone leaves. Words alone: no
+/// verdict depends on it.
 const LIKE_NOISE: f64 = 1.5;
 
-/// The share of the gap from which an effect is said to close it.
+/// The share of the gap from which an effect is said to close it: less would be printed as 0.1 %
+/// or nothing.
 const LEAST_SHARE: f64 = 0.001;
 
 /// The answer in a sentence or two: the verdict, and what was found.

@@ -1,20 +1,25 @@
 #!/usr/bin/env python3
 """The race of emitted C and C++ against emitted Rust, in one process.
 
-    cargo build --release && python3 benches/race/emitted_c.py [--models puma560,tulip] [-o FILE]
+    cargo build --release && python3 benches/race/emitted_c.py [--models puma560,tulip] \
+        [--clang COMMAND --clangxx COMMAND] [-o FILE]
 
 The same model, flavour and functions are emitted in each language. C is compiled by gcc and by
-clang, C++ by g++ and clang++: -O3 -march=native -ffp-contract=off; Rust for the native processor,
-with the runtime's feature `fma` where products are fused. Results are compared
-before anything is timed: bit by bit, but for zeros of fused products, whose sign gcc 12 may turn. A round times every variant once, in turns; tables have
-medians over rounds of the nanoseconds of a call, and of ratios to Rust within a round. It runs on
-x86-64 alone, as it calls Rust by the way in which C returns arrays there.
+clang, C++ by g++ and clang++: -O3 -march=native; Rust for the native processor, with the runtime's
+feature `fma` where products are fused. Results are compared before anything is timed: bit by bit,
+but for zeros of fused products, whose sign gcc 12 may turn. A round times every variant once, in
+turns; tables have medians over rounds of the nanoseconds of a call, and of ratios to Rust within a
+round. It runs on x86-64 alone, as it calls Rust by the way in which C returns arrays there.
+
+Languages are compared, and not ages of compilers, where clang has the LLVM of rustc (`rustc -vV`):
+PyPI's ziglang has a new one (`--clang "python -m ziglang cc -fno-sanitize=undefined"`).
 """
 import argparse
 import ctypes
 import os
 import pathlib
 import random
+import shlex
 import shutil
 import statistics
 import subprocess
@@ -39,7 +44,7 @@ FLAVOURS = {
 }
 COMPILERS = {"gcc": ("c", "-std=c99"), "clang": ("c", "-std=c99"),
              "g++": ("cpp", "-std=c++17"), "clang++": ("cpp", "-std=c++17")}
-C_FLAGS = ["-O3", "-march=native", "-ffp-contract=off", "-shared", "-fPIC"]
+C_FLAGS = ["-O3", "-march=native", "-shared", "-fPIC"]
 OURS, INPUTS, ROUNDS = 1, 64, 21
 
 RUST = """
@@ -122,7 +127,7 @@ def build_rust(denavit, models, folder, is_fused):
     return ctypes.CDLL(str(package / "target/release/libours.so")), joints
 
 
-def build_c(denavit, model, flavour, compiler, n, folder):
+def build_c(denavit, model, flavour, compiler, command, n, folder):
     """A library with every function of a model, called as the Rust is."""
     language, standard = COMPILERS[compiler]
     options, is_tunable, _ = FLAVOURS[flavour]
@@ -150,7 +155,7 @@ def build_c(denavit, model, flavour, compiler, n, folder):
     wrapper = place / ("race.cpp" if is_cpp else "race.c")
     wrapper.write_text("\n".join(lines) + "\n")
     library = place / "race.so"
-    run([compiler, standard, *C_FLAGS, wrapper, "-o", library, "-lm"])
+    run([*command, standard, *C_FLAGS, wrapper, "-o", library, "-lm"])
     return ctypes.CDLL(str(library))
 
 
@@ -210,11 +215,15 @@ def main():
     parser.add_argument("--models", default=",".join(MODELS))
     parser.add_argument("--denavit", default=str(ROOT / "target/release/denavit"))
     parser.add_argument("--folder", default=str(ROOT / "target/race_c"))
+    parser.add_argument("--clang", default="clang")
+    parser.add_argument("--clangxx", default="clang++")
     parser.add_argument("-o", "--output")
     options = parser.parse_args()
     folder = pathlib.Path(options.folder)
     folder.mkdir(parents=True, exist_ok=True)
-    compilers = [compiler for compiler in COMPILERS if shutil.which(compiler)]
+    given = {"clang": options.clang, "clang++": options.clangxx}
+    commands = {compiler: shlex.split(given.get(compiler, compiler)) for compiler in COMPILERS}
+    compilers = [compiler for compiler in COMPILERS if shutil.which(commands[compiler][0])]
     models = options.models.split(",")
     run(["gcc", "-O2", "-shared", "-fPIC", HERE / "timing.c", "-o", folder / "timing.so"])
     timing = ctypes.CDLL(str(folder / "timing.so"))
@@ -226,7 +235,8 @@ def main():
         for flavour, (_, _, is_fused) in FLAVOURS.items():
             library, joints = rust[is_fused]
             n = joints[model]
-            libraries = {compiler: build_c(options.denavit, model, flavour, compiler, n, folder)
+            libraries = {compiler: build_c(options.denavit, model, flavour, compiler,
+                                           commands[compiler], n, folder)
                          for compiler in compilers}
             for function in ARGUMENTS:
                 times, ratios = compete(model, flavour, function, n, library, libraries, timing)

@@ -101,6 +101,7 @@ pub fn cpp_header(robot: &Robot, program: &Program) -> Result<String, EmitError>
         ("about", HEADING.about(&context)),
         ("operations", operations_table(&context)),
         ("runtime", runtime.items),
+        ("straight_line", runtime::STRAIGHT_LINE.to_owned()),
         ("scalar", runtime.scalar),
         ("dof", context.dof.to_string()),
         ("joint_names", joint_names(robot, "\n")),

@@ -5,6 +5,9 @@ use super::dialect::Dialect;
 use crate::emit::layout::template;
 use crate::program::Program;
 
+/// What follows is no code for gcc's vectorizer of straight-line code.
+pub(super) const STRAIGHT_LINE: &str = include_str!("../../../templates/c/straight_line.c.in");
+
 /// What stands before the functions.
 pub(super) struct Runtime {
     /// Lines that include headers.
@@ -24,10 +27,13 @@ pub(super) fn of_c(dialect: &Dialect, program: &Program, functions: &str) -> Run
     let mut items = Vec::new();
     if is_fused {
         items.push(fuses(dialect));
-        items.push(filled(include_str!("../../../templates/c/fused.c.in"), dialect));
     }
     if turns.contains(&true) {
         items.push(sincos(dialect, is_fused, turns[1]));
+    }
+    items.push(STRAIGHT_LINE.to_owned());
+    if is_fused {
+        items.push(filled(include_str!("../../../templates/c/fused.c.in"), dialect));
     }
     for (call, text) in [
         ("sign_of(", include_str!("../../../templates/c/sign_of.c.in")),

@@ -62,6 +62,28 @@ fn c_has_the_bits_of_rust_in_every_flavour() {
     }
 }
 
+/// No flag asks for exact products, and the processor has fused ones.
+#[test]
+fn no_flag_of_contraction_is_needed_with_all_instructions_of_the_processor() {
+    let functions =
+        [FunctionName::GravityVector, FunctionName::InverseDynamics, FunctionName::MassMatrix];
+    let reference = Reference::new(&shipped("tulip"), Flavour::Baked, &functions, false);
+    let samples = reference.samples(SAMPLES);
+    for language in [Language::C, Language::Cpp] {
+        for compiler in compilers(language) {
+            let flags: [&[_]; 2] = [&["-march=native"], &["-march=native", "-ffp-contract=fast"]];
+            // Where all is fast the pragma of the standard does not bind clang.
+            let count = if compiler.starts_with("clang") { 1 } else { 2 };
+            for defines in &flags[..count] {
+                let build =
+                    Build { language, compiler, optimisation: "-O3", defines, ..Build::default() };
+                let found = built(&reference, &build).run::<f64>(&samples);
+                reference.assert_bits(&found, &samples, &build);
+            }
+        }
+    }
+}
+
 #[test]
 fn floats_have_the_bits_of_rust_and_are_near_those_of_doubles() {
     for name in ["puma560", "planar_2r"] {
@@ -161,9 +183,15 @@ fn every_angle_has_the_sine_of_rust() {
         let reference = Reference::new(&robot, Flavour::Tunable, &transforms, is_fused);
         for language in [Language::C, Language::Cpp] {
             for compiler in compilers(language) {
-                let build = Build { language, compiler, optimisation: "-O3", ..Build::default() };
-                let found = built(&reference, &build).run::<f64>(&samples);
-                reference.assert_bits(&found, &samples, &build);
+                // The Rust of this test is built for any processor: it fuses nothing.
+                let flags: &[&[_]] = if is_fused { &[&[]] } else { &[&[], &["-march=native"]] };
+                for &defines in flags {
+                    let optimisation = "-O3";
+                    let build =
+                        Build { language, compiler, optimisation, defines, ..Build::default() };
+                    let found = built(&reference, &build).run::<f64>(&samples);
+                    reference.assert_bits(&found, &samples, &build);
+                }
             }
         }
     }

@@ -333,7 +333,7 @@ fn compile(folder: &Path, build: &Build, prefix: &str) {
     };
     let mut compile = Command::new(build.compiler);
     compile
-        .args(["-ffp-contract=off", build.optimisation, "-o", "program"])
+        .args([build.optimisation, "-o", "program"])
         .args(build.defines)
         .args(real_flag)
         .args(files)

@@ -30,10 +30,10 @@ pub(crate) struct EffectsOption {
 /// What links look like on a page.
 #[derive(Debug, Args)]
 pub(crate) struct ShapesOption {
-    /// Show this URDF's shapes on links of the same names; `inspect` takes those of a model in URDF
-    #[arg(long, value_name = "URDF", requires = "html")]
+    /// Show the shapes of this URDF or MJCF on links of the same names; `inspect` takes its own
+    #[arg(long, value_name = "ROBOT", requires = "html")]
     shapes: Option<PathBuf>,
-    /// Folder of their meshes (STL, OBJ), or of their package; without it that of the URDF
+    /// Folder of their meshes (STL, OBJ), or of their package; without it that of ROBOT
     #[arg(long, value_name = "DIR", requires = "html")]
     meshes: Option<PathBuf>,
 }

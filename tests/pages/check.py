@@ -46,6 +46,8 @@ COLUMNS = """() => [...document.querySelectorAll('.wide')].filter(box => box.que
 HINTS = """async () => {
   const next = () => new Promise(done => requestAnimationFrame(() => setTimeout(done, 0)));
   const found = [];
+  // what a tab has just shown is measured before the next picture
+  await next();
   for (const box of document.querySelectorAll('.wide')) {
     if (!box.querySelector(':scope > table') || box.clientWidth === 0) continue;
     const hint = box.previousElementSibling;
@@ -270,6 +272,8 @@ class Checked:
 
 def check(browser, path, shots):
     checked, took = Checked(path), None
+    # pages of several folders have the same name
+    name = "-".join(part for part in path.with_suffix("").parts if part not in ("/", ".", ".."))
     for scheme in ("light", "dark"):
         for width in WIDTHS:
             if scheme == "dark" and width != WIDTHS[0]:
@@ -286,16 +290,16 @@ def check(browser, path, shots):
                 checked.accessible(page, scheme)
             if shots:
                 page.evaluate("scrollTo(0, 0)")
-                page.screenshot(path=shots / f"{path.stem}-{scheme}-{width}.png", full_page=True)
+                page.screenshot(path=shots / f"{name}-{scheme}-{width}.png", full_page=True)
             if scheme == "light" and width == WIDTHS[0]:
-                paper = page.pdf(format="A4", path=shots / f"{path.stem}.pdf" if shots else None)
+                paper = page.pdf(format="A4", path=shots / f"{name}.pdf" if shots else None)
                 checked.expect(len(paper) > 10_000, "the page on paper is empty")
             page.close()
     text = path.read_text(encoding="utf-8")
     checked.expect(len(text) <= MOST_BYTES, f"{len(text)} bytes, where {MOST_BYTES} are allowed")
     checked.expect(took <= MOST_SECONDS, f"ready after {took:.2f} s")
     checked.expect("unsafe-inline" not in text, "its policy allows what has no hash")
-    print(f"{path.name}: {len(text)} bytes, ready after {took:.2f} s, "
+    print(f"{path}: {len(text)} bytes, ready after {took:.2f} s, "
           f"drawn after {checked.drawn_s:.2f} s")
     for fault in dict.fromkeys(checked.faults):
         print(f"  {fault}")

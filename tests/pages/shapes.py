@@ -4,6 +4,7 @@
 
 FOLDER/urdf/arm.urdf has a mesh of 180 000 triangles, which is more than a page draws, one of text,
 an OBJ, and solids. broken.urdf has one that is cut, one of COLLADA, and one outside of the folder.
+FOLDER/leg.xml has the solids of an MJCF.
 """
 
 import json
@@ -35,6 +36,30 @@ ARM = """<robot name="arm">
   <joint name="flange" type="fixed"><origin xyz="0.3 0 0"/>
     <parent link="fore"/><child link="tool"/></joint>
 </robot>
+"""
+
+
+LEG = """<mujoco model="leg">
+  <compiler angle="radian"/>
+  <asset><mesh file="fore.stl"/></asset>
+  <default><geom group="1"/><default class="hit"><geom group="3"/></default></default>
+  <worldbody>
+    <geom type="plane" size="5 5 1"/>
+    <geom type="box" size="0.15 0.15 0.03" pos="0 0 0.83"/>
+    <body name="thigh" pos="0 0 0.8">
+      <joint name="hip" axis="0 1 0" range="-1 1"/>
+      <geom type="capsule" size="0.05" fromto="0 0 0 0 0 -0.4"/>
+      <geom type="ellipsoid" size="0.09 0.05 0.12" pos="0.03 0 -0.14" mass="0.1"/>
+      <geom class="hit" type="sphere" size="0.3" mass="0"/>
+      <body name="shin" pos="0 0 -0.4">
+        <joint name="knee" axis="0 1 0" range="-2 0"/>
+        <inertial pos="0 0 -0.15" mass="1" diaginertia="0.01 0.01 0.002"/>
+        <geom type="mesh" mesh="fore" euler="0 1.5707963267948966 0"/>
+        <geom type="cylinder" size="0.06 0.02" pos="0 0 -0.31"/>
+      </body>
+    </body>
+  </worldbody>
+</mujoco>
 """
 
 
@@ -97,6 +122,7 @@ def main():
         ARM.format(upper="upper.stl", fore="fore.stl", tool="tool.obj"))
     (urdf / "broken.urdf").write_text(
         ARM.format(upper="cut.stl", fore="../outside.stl", tool="tool.dae"))
+    (folder / "leg.xml").write_text(LEG)
     (folder / "swing.json").write_text(json.dumps(scenario()))
 
 

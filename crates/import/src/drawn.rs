@@ -1,4 +1,4 @@
-//! What links look like: the shapes of a URDF, each in the frame of a row of the model.
+//! What links look like: the shapes of a description, each in the frame of a row of the model.
 //!
 //! Pictures are drawn from these, and nothing is computed: here exact numbers become doubles.
 
@@ -7,8 +7,9 @@ use crate::fault::{Cause, Faults, clip};
 use crate::options::{Mimic, Options};
 use crate::place::{Pose, matrix};
 use crate::solid::Solid;
-use crate::xml::Source;
-use crate::{Error, layout, urdf};
+use crate::tree::Tree;
+use crate::xml::{Element, Source};
+use crate::{Error, Include, layout, mjcf, urdf, with_included};
 use denavit_codegen::model::Report;
 use denavit_codegen::number::to_f64;
 
@@ -23,6 +24,15 @@ pub struct DrawnShape {
     pub form: DrawnForm,
 }
 
+/// What links look like.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drawn {
+    /// The shapes, in the order of the file.
+    pub shapes: Vec<DrawnShape>,
+    /// Shapes that are left out, each with the reason.
+    pub remarks: Vec<String>,
+}
+
 /// A form about its own centre; what is round is round about z \[m\].
 #[derive(Clone, Debug, PartialEq)]
 pub enum DrawnForm {
@@ -32,18 +42,22 @@ pub enum DrawnForm {
     Sphere(f64),
     /// Its radius, and half its length.
     Cylinder([f64; 2]),
+    /// A cylinder with half a sphere on both ends: its radius, and half the length between them.
+    Capsule([f64; 2]),
+    /// Half of each axis.
+    Ellipsoid([f64; 3]),
     /// A file, and the factor of each axis.
     Mesh(String, [f64; 3]),
 }
 
 impl DrawnForm {
-    fn of_solid(solid: &Solid) -> Option<Self> {
+    fn of_solid(solid: &Solid) -> Self {
         match solid {
-            Solid::Box(half) => Some(Self::Box(numbers(half))),
-            Solid::Sphere(radius) => Some(Self::Sphere(to_f64(radius))),
-            Solid::Cylinder { radius, half } => Some(Self::Cylinder([radius, half].map(to_f64))),
-            // no URDF has them
-            Solid::Ellipsoid(_) | Solid::Capsule { .. } => None,
+            Solid::Box(half) => Self::Box(numbers(half)),
+            Solid::Ellipsoid(half) => Self::Ellipsoid(numbers(half)),
+            Solid::Sphere(radius) => Self::Sphere(to_f64(radius)),
+            Solid::Cylinder { radius, half } => Self::Cylinder([radius, half].map(to_f64)),
+            Solid::Capsule { radius, half } => Self::Capsule([radius, half].map(to_f64)),
         }
     }
 }
@@ -63,41 +77,60 @@ fn numbers(vector: &Vector) -> [f64; 3] {
     vector.each_ref().map(to_f64)
 }
 
-/// What the links of a URDF look like: their `visual` shapes, or the shapes that they touch others
-/// with. `file` is its name, for messages. No mesh is read.
+/// A tree, and what its links look like: each by its place in the tree.
+pub(crate) struct TreeLooks {
+    pub(crate) tree: Tree,
+    pub(crate) looks: Vec<(usize, Vec<LinkShape>)>,
+    pub(crate) remarks: Vec<String>,
+}
+
+/// What the links of a description look like: of a URDF their `visual` shapes, or else those that
+/// they touch others with; of an MJCF what MuJoCo itself shows. `file` is its name, for messages;
+/// `include` reads files that an MJCF includes. No mesh is read.
 ///
 /// # Errors
 /// All that is wrong with it.
-pub fn shapes(file: &str, bytes: &[u8]) -> Result<Vec<DrawnShape>, Error> {
+pub fn shapes(file: &str, bytes: &[u8], include: &mut Include<'_>) -> Result<Drawn, Error> {
     let source = Source::read(file, bytes)?;
     let mut faults: Faults = Report::default();
     let refused = |faults: Faults| Err(Error::from(faults.into_error(file, bytes, None)));
     let Some(document) = source.document() else { return refused(faults) };
     let root = source.root(&document);
-    if root.name() != "robot" {
-        let said = format!("<{}> is no <robot>: shapes are those of a URDF", clip(root.name()));
-        faults.push(root.at(), Cause::new(said));
-        return refused(faults);
-    }
-    // joints that follow others have the rows of joints of their own
-    let options = Options { mimic: Mimic::Free, ..Options::default() };
-    let tree = urdf::tree(file, root, &options, &mut crate::nothing_included, &mut faults);
-    let looks = urdf::looks(root, &mut faults);
-    let Some(tree) = tree.filter(|_| faults.is_empty()) else { return refused(faults) };
-    let layout = layout::layout(&tree);
-    let mut drawn = Vec::new();
-    for (link, found) in looks {
-        let place = tree.links.iter().position(|one| one.name.as_deref() == Some(&*link));
-        let Some(place) = place else { continue };
-        let frame = &layout.frames[place];
-        drawn.extend(found.into_iter().filter_map(|one| drawn_shape(frame.clone(), &one)));
-    }
-    Ok(drawn)
+    let found = match root.name() {
+        "robot" => of_urdf(file, root, &mut faults),
+        "mujoco" => with_included(root, include, &mut faults, |included, _, faults| {
+            mjcf::looks(file, root, included, faults)
+        }),
+        other => {
+            let said = format!("<{}> is neither <robot> (URDF) nor <mujoco> (MJCF)", clip(other));
+            faults.push(root.at(), Cause::new(said));
+            None
+        }
+    };
+    let Some(found) = found.filter(|_| faults.is_empty()) else { return refused(faults) };
+    let frames = layout::layout(&found.tree).frames;
+    let shapes = found.looks.into_iter().flat_map(|(link, shapes)| {
+        let frame = frames[link].clone();
+        shapes.into_iter().map(move |one| drawn_shape(frame.clone(), &one))
+    });
+    Ok(Drawn { shapes: shapes.collect(), remarks: found.remarks })
 }
 
-fn drawn_shape(frame: Option<String>, shape: &LinkShape) -> Option<DrawnShape> {
+fn of_urdf(file: &str, root: Element<'_>, faults: &mut Faults) -> Option<TreeLooks> {
+    // joints that follow others have the rows of joints of their own
+    let options = Options { mimic: Mimic::Free, ..Options::default() };
+    let tree = urdf::tree(file, root, &options, &mut crate::nothing_included, faults);
+    let looks = urdf::looks(root, faults);
+    let tree = tree?;
+    let place = |name: &str| tree.links.iter().position(|one| one.name.as_deref() == Some(name));
+    let looks = looks.into_iter().filter_map(|(name, shapes)| Some((place(&name)?, shapes)));
+    let looks = looks.collect();
+    Some(TreeLooks { tree, looks, remarks: Vec::new() })
+}
+
+fn drawn_shape(frame: Option<String>, shape: &LinkShape) -> DrawnShape {
     let form = match &shape.form {
-        LinkForm::Solid(solid) => DrawnForm::of_solid(solid)?,
+        LinkForm::Solid(solid) => DrawnForm::of_solid(solid),
         LinkForm::Mesh(file, scale) => DrawnForm::Mesh(file.clone(), numbers(scale)),
     };
     let turn = matrix(&shape.place.turns);
@@ -106,5 +139,5 @@ fn drawn_shape(frame: Option<String>, shape: &LinkShape) -> Option<DrawnShape> {
         let [x, y, z] = numbers(&turn[row]);
         [x, y, z, at[row]]
     });
-    Some(DrawnShape { frame, placed, form })
+    DrawnShape { frame, placed, form }
 }

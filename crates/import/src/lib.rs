@@ -32,13 +32,14 @@ mod tree;
 mod urdf;
 mod xml;
 
-pub use drawn::{DrawnForm, DrawnShape, shapes};
+pub use drawn::{Drawn, DrawnForm, DrawnShape, shapes};
 pub use error::{Error, ErrorKind};
 pub use export::{Exported, Format, export, export_into};
 pub use fault::Cause;
 pub use options::{BaseChoice, Mimic, Options};
 
 use denavit_codegen::model::Report;
+use std::collections::BTreeMap;
 use xml::Source;
 
 /// What became of a description.
@@ -87,33 +88,9 @@ pub fn import(
     let name = short_name(file);
     let tree = match root.name() {
         "robot" => urdf::tree(name, root, options, include, &mut faults),
-        "mujoco" => {
-            let files = included_files(root, include, &mut faults);
-            if !faults.is_empty() {
-                return refused(faults);
-            }
-            let sources: Vec<(String, Source<'_>, usize)> = files
-                .iter()
-                .filter_map(|(name, bytes, at)| match Source::read(name, bytes) {
-                    Ok(source) => Some((name.clone(), source, *at)),
-                    Err(error) => {
-                        faults.push(*at, Cause::new(error.to_string()));
-                        None
-                    }
-                })
-                .collect();
-            let documents: Vec<_> = sources
-                .iter()
-                .filter_map(|(name, source, at)| Some((name, source, source.document()?, *at)))
-                .collect();
-            let included = documents
-                .iter()
-                .map(|(name, source, document, at)| {
-                    ((*name).clone(), source.included(document, *at))
-                })
-                .collect();
-            mjcf::tree(name, root, included, options, include, &mut faults)
-        }
+        "mujoco" => with_included(root, include, &mut faults, |included, include, faults| {
+            mjcf::tree(name, root, included, options, include, faults)
+        }),
         other => {
             let said =
                 format!("<{}> is neither <robot> (URDF) nor <mujoco> (MJCF)", fault::clip(other));
@@ -132,6 +109,42 @@ pub fn import(
         return refused(faults);
     }
     Ok(Imported { model, notes: tree.notes })
+}
+
+/// What `read` makes of a description and the files that it includes; nothing if one is at fault.
+fn with_included<T>(
+    root: xml::Element<'_>,
+    include: &mut Include<'_>,
+    faults: &mut fault::Faults,
+    read: impl FnOnce(
+        BTreeMap<String, xml::Element<'_>>,
+        &mut Include<'_>,
+        &mut fault::Faults,
+    ) -> Option<T>,
+) -> Option<T> {
+    let files = included_files(root, include, faults);
+    if !faults.is_empty() {
+        return None;
+    }
+    let sources: Vec<(String, Source<'_>, usize)> = files
+        .iter()
+        .filter_map(|(name, bytes, at)| match Source::read(name, bytes) {
+            Ok(source) => Some((name.clone(), source, *at)),
+            Err(error) => {
+                faults.push(*at, Cause::new(error.to_string()));
+                None
+            }
+        })
+        .collect();
+    let documents: Vec<_> = sources
+        .iter()
+        .filter_map(|(name, source, at)| Some((name, source, source.document()?, *at)))
+        .collect();
+    let included = documents
+        .iter()
+        .map(|(name, source, document, at)| ((*name).clone(), source.included(document, *at)))
+        .collect();
+    read(included, include, faults)
 }
 
 /// The files that a description includes, and those that they include, with the places where the

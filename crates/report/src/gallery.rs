@@ -122,7 +122,7 @@ impl Gallery {
         for (heading, list) in [("Results", pages), ("Pictures and data", others)] {
             let rows: Vec<Row> = list.into_iter().map(|(key, file)| row(key, file)).collect();
             if !rows.is_empty() {
-                let parts = vec![Part::Table(table(rows))];
+                let parts = vec![Part::Table(table(heading, rows))];
                 sections.push(Section { heading: heading.to_owned(), parts });
             }
         }
@@ -138,10 +138,10 @@ impl Gallery {
     }
 }
 
-fn table(rows: Vec<Row>) -> HtmlTable {
+fn table(what: &str, rows: Vec<Row>) -> HtmlTable {
     let heading = |(text, is_number): (&str, bool)| Heading { heading: text.to_owned(), is_number };
     let columns = [("file", false), ("what it is", false), ("answer", false), ("size [kB]", true)];
-    let caption = "Results, the newest first; a click on a heading sorts them.".to_owned();
+    let caption = format!("{what}, the newest first; a click on a heading sorts them.");
     HtmlTable { caption, columns: columns.map(heading).to_vec(), rows }
 }
 

@@ -1,4 +1,4 @@
-//! What a robot looks like: the shapes of a URDF, with the bytes of its meshes.
+//! What a robot looks like: the shapes of its description, with the bytes of its meshes.
 
 use crate::error::{Cause, Error};
 use crate::files::Files;
@@ -15,7 +15,7 @@ const MOST_BYTES: usize = 64 << 20;
 pub struct Shapes {
     /// The shapes, in the order of the file.
     pub shapes: Vec<LookOfLink>,
-    /// Meshes that are not there, each with the reason.
+    /// Shapes that are not there, each with the reason.
     pub remarks: Vec<String>,
 }
 
@@ -29,17 +29,19 @@ pub struct LookOfLink {
 }
 
 impl Files {
-    /// The shapes of a URDF. Its meshes lie beside it, or in `meshes`; one that is not read is a
-    /// remark.
+    /// The shapes of a URDF or an MJCF. Its meshes lie beside it, or in `meshes`; one that is not
+    /// read is a remark.
     ///
     /// # Errors
-    /// Why the URDF is not read, or all that is wrong with it.
+    /// Why the description is not read, or all that is wrong with it.
     pub fn shapes(&self, place: &Path, meshes: Option<&Path>) -> Result<Shapes, Error> {
         let (name, bytes) = self.description(place)?;
-        let mut found = Shapes::default();
+        let mut include = |named: Beside<'_>| self.of_description(place, meshes, named);
+        let drawn = shapes(&name, &bytes, &mut include).map_err(Cause::Import)?;
+        let mut found = Shapes { shapes: Vec::new(), remarks: drawn.remarks };
         let mut known: BTreeMap<String, Option<Rc<Vec<u8>>>> = BTreeMap::new();
         let mut room = MOST_BYTES;
-        for shape in shapes(&name, &bytes).map_err(Cause::Import)? {
+        for shape in drawn.shapes {
             let DrawnForm::Mesh(file, _) = &shape.form else {
                 found.shapes.push(LookOfLink { shape, mesh: None });
                 continue;
@@ -63,7 +65,8 @@ impl Files {
         Ok(found)
     }
 
-    /// The shapes of `given`, or of the model itself where its file is a URDF; none otherwise.
+    /// The shapes of `given`, or of the model itself where its file is a description; none
+    /// otherwise.
     ///
     /// # Errors
     /// Those of [`Files::shapes`].
@@ -77,8 +80,6 @@ impl Files {
             return self.shapes(given, meshes).map(Some);
         }
         let bytes = if model.is_file() { self.bytes(model)? } else { Vec::new() };
-        // a MuJoCo file has shapes of its own kind
-        let is_urdf = is_description(&bytes) && bytes.windows(6).any(|word| word == b"<robot");
-        if is_urdf { self.shapes(model, meshes).map(Some) } else { Ok(None) }
+        if is_description(&bytes) { self.shapes(model, meshes).map(Some) } else { Ok(None) }
     }
 }

@@ -56,17 +56,17 @@ pub(crate) struct Reader<'s, 'f> {
     pub(crate) base: BaseChoice,
     pub(crate) notes: MassNotes,
     pub(crate) snapped: Snapped,
-    /// What each body touches others with, by its name.
-    pub(crate) touching: BTreeMap<String, Touching<'s>>,
+    /// The geoms of each body, by its name.
+    pub(crate) geoms: BTreeMap<String, Geoms<'s>>,
     unnamed: usize,
 }
 
-/// What a body touches others with.
-pub(crate) struct Touching<'s> {
+/// The geoms of a body.
+pub(crate) struct Geoms<'s> {
     /// The place of the body in the tree, and in the file.
     pub(crate) link: usize,
     pub(crate) at: usize,
-    pub(crate) geoms: Vec<(Element<'s>, Scope<'s>)>,
+    pub(crate) all: Vec<(Element<'s>, Scope<'s>)>,
 }
 
 impl<'s, 'f> Reader<'s, 'f> {
@@ -79,8 +79,8 @@ impl<'s, 'f> Reader<'s, 'f> {
         faults: &'f mut Faults,
     ) -> Self {
         let (notes, snapped) = (MassNotes::default(), Vec::new());
-        let touching = BTreeMap::new();
-        Self { settings, faults, tree, driven, base, notes, snapped, touching, unnamed: 0 }
+        let geoms = BTreeMap::new();
+        Self { settings, faults, tree, driven, base, notes, snapped, geoms, unnamed: 0 }
     }
 
     /// What is in a body, through frames and included files.
@@ -175,8 +175,8 @@ impl<'s, 'f> Reader<'s, 'f> {
             self.tree.links.push(TreeLink { body, ..link });
         }
         let own = self.tree.links.len() - 1;
-        let touching = Touching { link: own, at: element.at(), geoms: contents.geoms };
-        if self.touching.insert(name, touching).is_some()
+        let geoms = Geoms { link: own, at: element.at(), all: contents.geoms };
+        if self.geoms.insert(name, geoms).is_some()
             && let Some(name) = element.get("name")
         {
             let said = format!("two bodies are called `{}`", clip(name.text));

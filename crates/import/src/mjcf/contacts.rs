@@ -1,6 +1,6 @@
 //! Contact points of bodies, from the geoms that touch others.
 
-use super::body::Touching;
+use super::body::Geoms;
 use super::frame::pose;
 use super::geom::{placed, touches};
 use super::meshes;
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 /// Adds the points of the bodies that were asked for.
 pub(crate) fn find(
     tree: &mut Tree,
-    bodies: &BTreeMap<String, Touching<'_>>,
+    bodies: &BTreeMap<String, Geoms<'_>>,
     settings: &Settings<'_>,
     options: &Options,
     include: &mut Include<'_>,
@@ -40,13 +40,13 @@ pub(crate) fn find(
 
 fn shapes(
     name: &str,
-    body: &Touching<'_>,
+    body: &Geoms<'_>,
     settings: &Settings<'_>,
     include: &mut Include<'_>,
     faults: &mut Faults,
 ) -> Vec<(Pose, Shape)> {
     let mut found = Vec::new();
-    for (geom, scope) in &body.geoms {
+    for (geom, scope) in &body.all {
         let geom = settings.with_class(*geom, scope.class, faults);
         let kind = geom.get("type").map_or("sphere", |kind| kind.text);
         if matches!(kind, "plane" | "hfield" | "sdf") || !touches(&geom, faults) {

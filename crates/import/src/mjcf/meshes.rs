@@ -15,6 +15,27 @@ pub(crate) fn of_geom(
     include: &mut Include<'_>,
     faults: &mut Faults,
 ) -> Option<Shape> {
+    let hint = "write \"contacts\" into the model file";
+    let asset = asset(geom, settings, hint, faults)?;
+    meshed(&asset.path, asset.at, asset.scale.as_ref(), include, faults)
+}
+
+/// The file of a mesh.
+pub(crate) struct Asset {
+    /// From the folder of the description.
+    pub(crate) path: String,
+    /// Where the file is named.
+    at: usize,
+    pub(crate) scale: Option<Vector>,
+}
+
+/// The file of a geom's mesh; `hint` is the way out where it has none.
+pub(crate) fn asset(
+    geom: &Attributes<'_>,
+    settings: &Settings<'_>,
+    hint: &str,
+    faults: &mut Faults,
+) -> Option<Asset> {
     let Some(wanted) = geom.get("mesh") else {
         faults.push(geom.at, Cause::new("a geom of the type mesh has no `mesh`"));
         return None;
@@ -28,21 +49,19 @@ pub(crate) fn of_geom(
     };
     let Some(file) = asset.get("file") else {
         let said = format!("the mesh `{}` has no file", clip(wanted.text));
-        faults.push(asset.at, Cause::with_hint(said, "write \"contacts\" into the model file"));
+        faults.push(asset.at, Cause::with_hint(said, hint));
         return None;
     };
     let before = faults.count();
     let scale: Option<Vector> = asset.numbers("scale", faults);
     if is_moved(&asset, faults) {
         let said = format!("the mesh `{}` has `refpos` or `refquat`", clip(wanted.text));
-        let hint = "move the geom instead, or write \"contacts\" into the model file";
-        faults.push(asset.at, Cause::with_hint(said, hint));
+        faults.push(asset.at, Cause::with_hint(said, format!("move the geom instead, or {hint}")));
     }
     if faults.count() > before {
         return None;
     }
-    let path = settings.mesh_path(file.text);
-    meshed(&path, file.at, scale.as_ref(), include, faults)
+    Some(Asset { path: settings.mesh_path(file.text), at: file.at, scale })
 }
 
 /// The name of an asset: that of its file, if it has none.

@@ -5,6 +5,7 @@ mod contacts;
 mod frame;
 mod geom;
 mod joint;
+mod looks;
 mod mass;
 mod meshes;
 mod refused;
@@ -13,11 +14,12 @@ mod settings;
 use crate::Include;
 use crate::body::settle;
 use crate::chain;
+use crate::drawn::TreeLooks;
 use crate::fault::{Cause, Faults, listed};
 use crate::options::{BaseChoice, Options};
 use crate::tree::{Tree, TreeLink};
 use crate::xml::Element;
-use body::{Reader, Scope};
+use body::{Geoms, Reader, Scope};
 use denavit_codegen::number::Rational;
 use num_traits::ToPrimitive;
 use settings::Settings;
@@ -38,15 +40,54 @@ pub(crate) fn tree<'s>(
     faults: &mut Faults,
 ) -> Option<Tree> {
     let settings = Settings::read(root, included, faults);
+    let Read { mut tree, geoms, .. } = read(file, root, &settings, options.base, faults);
+    contacts::find(&mut tree, &geoms, &settings, options, include, faults);
+    if let Some(tip) = &options.tip {
+        chain::cut(&mut tree, tip, root.at(), faults);
+    }
+    if tree.links.iter().all(|link| link.joint.is_none()) && !tree.floats {
+        faults.push(root.at(), Cause::new("nothing moves: no body has a joint"));
+    }
+    faults.is_empty().then_some(tree)
+}
+
+/// What the bodies of a file look like; nothing if it is at fault.
+pub(crate) fn looks<'s>(
+    file: &str,
+    root: Element<'s>,
+    included: BTreeMap<String, Element<'s>>,
+    faults: &mut Faults,
+) -> Option<TreeLooks> {
+    let settings = Settings::read(root, included, faults);
+    let found = read(file, root, &settings, Options::default().base, faults);
+    faults.is_empty().then(|| looks::of(found, &settings))
+}
+
+/// What the bodies of a file are.
+struct Read<'s> {
+    tree: Tree,
+    /// Geoms of each body, by its name.
+    geoms: BTreeMap<String, Geoms<'s>>,
+    /// Geoms of the world, where what moves stands on it.
+    ground: Vec<(Element<'s>, Scope<'s>)>,
+}
+
+fn read<'s>(
+    file: &str,
+    root: Element<'s>,
+    settings: &Settings<'s>,
+    base: BaseChoice,
+    faults: &mut Faults,
+) -> Read<'s> {
     let sections = settings.children(root);
-    refused::refuse(&settings, &sections, faults);
+    refused::refuse(settings, &sections, faults);
     let of = |name: &'static str| sections.iter().copied().filter(move |one| one.name() == name);
     let driven = of("actuator")
         .flat_map(|actuators| settings.children(actuators))
         .filter_map(|actuator| actuator.get("joint").or(actuator.get("jointinparent")))
         .map(|joint| joint.text);
     let driven: BTreeSet<&str> = driven.collect();
-    let acting = refused::acting(&settings, &of("actuator").collect::<Vec<_>>(), faults);
+    let acting = refused::acting(settings, &of("actuator").collect::<Vec<_>>(), faults);
     let name = root.get("model").map_or("robot", |name| name.text);
     let tree = Tree {
         name: name.to_owned(),
@@ -57,11 +98,11 @@ pub(crate) fn tree<'s>(
         notes: Vec::new(),
         contacts: Vec::new(),
     };
-    let mut reader = Reader::new(&settings, tree, driven, options.base, faults);
-    bodies(&mut reader, root, &of("worldbody").collect::<Vec<_>>());
-    let (snapped, notes, touching) = (reader.snapped, reader.notes, reader.touching);
+    let mut reader = Reader::new(settings, tree, driven, base, faults);
+    let ground = bodies(&mut reader, root, &of("worldbody").collect::<Vec<_>>());
+    let (snapped, notes, geoms) = (reader.snapped, reader.notes, reader.geoms);
     let mut tree = reader.tree;
-    mass::scale(&mut tree, &settings);
+    mass::scale(&mut tree, settings);
     let mut note = |said: &str, names: &[String]| {
         if !names.is_empty() {
             tree.notes.push(format!("{said}: {}", listed(names)));
@@ -84,32 +125,32 @@ pub(crate) fn tree<'s>(
             .push(format!("masses of {count} bodies are those of their shapes, at 17 digits"));
     }
     settle(&mut tree, faults);
-    contacts::find(&mut tree, &touching, &settings, options, include, faults);
-    if let Some(tip) = &options.tip {
-        chain::cut(&mut tree, tip, root.at(), faults);
-    }
-    if tree.links.iter().all(|link| link.joint.is_none()) && !tree.floats {
-        faults.push(root.at(), Cause::new("nothing moves: no body has a joint"));
-    }
-    faults.is_empty().then_some(tree)
+    Read { tree, geoms, ground }
 }
 
-/// Reads all bodies: on the world, or on the one that floats.
-fn bodies<'s>(reader: &mut Reader<'s, '_>, root: Element<'s>, worlds: &[Element<'s>]) {
-    let mut tops = Vec::new();
+/// Reads all bodies: on the world, whose geoms these are, or on the one that floats.
+fn bodies<'s>(
+    reader: &mut Reader<'s, '_>,
+    root: Element<'s>,
+    worlds: &[Element<'s>],
+) -> Vec<(Element<'s>, Scope<'s>)> {
+    let (mut tops, mut ground) = (Vec::new(), Vec::new());
     for world in worlds {
         let class = world.get("childclass").map(|class| class.text);
-        tops.extend(reader.contents(*world, Scope::of(class)).bodies);
+        let contents = reader.contents(*world, Scope::of(class));
+        tops.extend(contents.bodies);
+        ground.extend(contents.geoms);
     }
     if let Some((body, scope)) = floating(reader, root, &tops) {
         reader.tree.floats = true;
         reader.push(body, None, &scope);
-        return;
+        return Vec::new();
     }
     reader.tree.links.push(TreeLink::fixed("world", None, Vec::new()));
     for (body, scope) in tops {
         reader.push(body, Some(0), &scope);
     }
+    ground
 }
 
 /// The body that floats, if all that moves stands on it.

@@ -1,8 +1,11 @@
 //! A run as a page.
 
 use super::run::scheme_text;
-use crate::html::{Cell, Fact, Grade, Heading, HtmlTable, Page, Part, Row, Section, VerdictLine};
+use crate::html::{
+    Cell, Fact, Grade, Heading, HtmlTable, Page, Part, Row, Section, VerdictLine, with_units,
+};
 use crate::run::{ShownWithRun, beside_parts, replay, run_charts};
+use denavit_numerics::short;
 use denavit_simulate::scenario::Scenario;
 use denavit_simulate::{EventKind, Run, Stop};
 
@@ -78,8 +81,9 @@ fn audit(scenario: &Scenario, run: &Run, broken: &[(&'static str, f64, f64)]) ->
         let allowed = broken.iter().find(|(_, found, _)| *found == worst);
         let allowed = allowed.map_or_else(String::new, |(.., most)| format!("{most:.0e}"));
         let is_marked = !allowed.is_empty();
-        let worst = Cell::number(worst, format!("{worst:.3e}"));
-        let mut cells = vec![Cell::text(law), worst];
+        // more digits than these say nothing of it
+        let shown = format!("{worst:.3e}").parse().map_or_else(|_| worst.to_string(), short);
+        let mut cells = vec![Cell::text(with_units(&law)), Cell::number(worst, shown)];
         cells.extend(has_broken.then(|| Cell::text(allowed)));
         Row { cells, is_marked }
     };

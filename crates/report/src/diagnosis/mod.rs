@@ -85,7 +85,10 @@ fn torque_chart(joint: &str, curve: &Curve) -> Chart {
         group: "torques",
         over: ["time [s]", "time [s]"],
         x: curve.t_s.clone(),
-        panels: vec![Panel::new("torque [N m, N]", 190, torques), Panel::new("left", 100, left)],
+        panels: vec![
+            Panel::new("torque [N m, N]", 190, torques),
+            Panel::new("left [N m, N]", 100, left),
+        ],
         windows: windows(curve).iter().map(|one| [one.from_s, one.to_s]).collect(),
     }
     .thinned()
@@ -284,7 +287,7 @@ impl DiagnosisPage<'_> {
         ]);
         let rows = one.parameters.iter().map(|value| {
             let std = match value.std.is_finite() {
-                true => Cell::number(value.std, format!("{:.1e}", value.std)),
+                true => Cell::number(value.std, two_digits(value.std)),
                 false => Cell::text("not determined"),
             };
             let cells = vec![
@@ -436,4 +439,9 @@ fn headings(list: &[(&str, bool)]) -> Vec<Heading> {
 
 fn share(value: f64) -> Cell {
     Cell::number(value, percent(value))
+}
+
+/// An error as a person writes it: two digits say all of it.
+fn two_digits(value: f64) -> String {
+    format!("{value:.1e}").parse().map_or_else(|_| short(value), short)
 }

@@ -2,8 +2,8 @@
 
 use super::units::with_units;
 use super::{Page, Part};
-use minijinja::Environment;
-use minijinja::value::Serde;
+use minijinja::value::{Serde, Value};
+use minijinja::{Environment, HtmlEscape};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -45,9 +45,33 @@ pub(super) fn filled(page: &Page) -> String {
     );
     let mut environment = Environment::new();
     environment.add_filter("units", |text: String| with_units(&text));
+    environment.add_filter("code", |text: String| Value::from_safe_string(with_code(&text)));
     environment.add_template(NAME, TEMPLATE).expect("the template is part of the library");
     let template = environment.get_template(NAME).expect("it was just added");
     let scripts = scripts.into_iter().map(|(text, _)| text).collect();
     let frame = Frame { page, policy, style: STYLE, scripts };
     template.render(Serde(&frame)).expect("the template asks for what a page has")
+}
+
+/// A text for HTML in which names between backticks are code, as messages write them.
+fn with_code(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, inside)) = rest.split_once('`') {
+        let Some((inside, after)) = inside.split_once('`') else { break };
+        out.push_str(&format!("{}<code>{}</code>", HtmlEscape(before), HtmlEscape(inside)));
+        rest = after;
+    }
+    out + &HtmlEscape(rest).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn code_stands_between_backticks_and_stays_text() {
+        assert_eq!(with_code("of `q_1` and <b>"), "of <code>q_1</code> and &lt;b&gt;");
+        assert_eq!(with_code("`<i>` one ` left"), "<code>&lt;i&gt;</code> one ` left");
+    }
 }

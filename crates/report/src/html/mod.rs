@@ -19,7 +19,7 @@ pub use formula::{FormulaError, mathml};
 pub use replay::{Mark, Replay};
 pub(crate) use replay::{Scene, SceneMark, Slider};
 pub use table::{Cell, Heading, HtmlTable, Row};
-pub(crate) use units::unit;
+pub(crate) use units::{unit, with_units};
 
 use serde::Serialize;
 

@@ -2,10 +2,10 @@
 
 use super::units::unit;
 use super::{FormulaError, mathml};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
-/// A table whose rows a reader can sort.
-#[derive(Clone, Debug, Serialize)]
+/// A table whose rows a reader can sort. A column in which no row says anything is not shown.
+#[derive(Clone, Debug)]
 pub struct HtmlTable {
     /// What it shows.
     pub caption: String,
@@ -13,6 +13,36 @@ pub struct HtmlTable {
     pub columns: Vec<Heading>,
     /// Its rows, each with a cell for every column.
     pub rows: Vec<Row>,
+}
+
+/// What is shown of a table.
+#[derive(Serialize)]
+struct Shown<'t> {
+    caption: &'t str,
+    columns: Vec<&'t Heading>,
+    rows: Vec<ShownRow<'t>>,
+}
+
+#[derive(Serialize)]
+struct ShownRow<'t> {
+    cells: Vec<&'t Cell>,
+    is_marked: bool,
+}
+
+impl Serialize for HtmlTable {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let says = |at: &usize| {
+            self.rows.iter().filter_map(|row| row.cells.get(*at)).any(|cell| !cell.is_empty())
+        };
+        let kept: Vec<usize> =
+            (0..self.columns.len()).filter(|at| self.rows.is_empty() || says(at)).collect();
+        let shown = Shown {
+            caption: &self.caption,
+            columns: kept.iter().map(|&at| &self.columns[at]).collect(),
+            rows: self.rows.iter().map(|row| row.shown(&kept)).collect(),
+        };
+        shown.serialize(serializer)
+    }
 }
 
 /// The head of a column.
@@ -25,12 +55,19 @@ pub struct Heading {
 }
 
 /// A row of a table.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Row {
     /// The cells.
     pub cells: Vec<Cell>,
     /// Whether it stands out.
     pub is_marked: bool,
+}
+
+impl Row {
+    fn shown(&self, kept: &[usize]) -> ShownRow<'_> {
+        let cells = kept.iter().filter_map(|&at| self.cells.get(at)).collect();
+        ShownRow { cells, is_marked: self.is_marked }
+    }
 }
 
 /// A cell of a table.
@@ -64,6 +101,11 @@ impl Cell {
     /// Words.
     pub fn text(text: impl Into<String>) -> Self {
         Self { text: text.into(), ..Self::default() }
+    }
+
+    /// Whether it shows nothing.
+    fn is_empty(&self) -> bool {
+        self.text.is_empty() && self.mathml.is_none() && self.bars.is_none()
     }
 
     /// Words that lead to another page.

@@ -12,6 +12,8 @@ pub(crate) fn unit(text: &str) -> String {
     if !is_unit(text) {
         return text.to_owned();
     }
+    // nor where a unit begins with one: the gain of a speed is in s/rad
+    let text = text.strip_prefix("1 ").unwrap_or(text);
     let dotted = text.replace(' ', "\u{b7}");
     [("^2", "\u{b2}"), ("^3", "\u{b3}"), ("^-1", "\u{207b}\u{b9}")]
         .into_iter()
@@ -50,6 +52,8 @@ mod tests {
         assert_eq!(unit("N m s/rad"), "N·m·s/rad");
         assert_eq!(unit("of the motor"), "of the motor");
         assert_eq!(unit("1"), "");
+        assert_eq!(unit("1 s/rad"), "s/rad");
+        assert_eq!(unit("1/s"), "1/s");
         assert_eq!(with_units("torque [N m, N] of [a b]"), "torque [N·m, N] of [a b]");
         assert_eq!(with_units("open [N m"), "open [N m");
     }

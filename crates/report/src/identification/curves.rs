@@ -64,7 +64,7 @@ fn torque(joint: &JointResidual, samples: usize) -> Chart {
         x,
         panels: vec![
             Panel::new("torque [N m, N]", TALL, torques),
-            Panel::new("residual", LOW, residual),
+            Panel::new("residual [N m, N]", LOW, residual),
         ],
         windows: Vec::new(),
     }
@@ -72,7 +72,7 @@ fn torque(joint: &JointResidual, samples: usize) -> Chart {
 
 /// Positions, and torques where they are compared, of a log that was simulated again.
 pub(super) fn motion(forward: &Forward) -> impl Iterator<Item = Chart> + '_ {
-    let chart = move |joint: &str, what: &str, compared: &Compared| {
+    let chart = move |joint: &str, [what, unit]: [&str; 2], compared: &Compared| {
         let pairs = compared.measured.iter().zip(&compared.simulated);
         let off = pairs.map(|(measured, simulated)| measured - simulated).collect();
         let both = vec![
@@ -87,15 +87,19 @@ pub(super) fn motion(forward: &Forward) -> impl Iterator<Item = Chart> + '_ {
             group: "motion",
             over: TIME,
             x: forward.t_s.clone(),
-            panels: vec![Panel::new(what, TALL, both), Panel::new("difference", LOW, off)],
+            panels: vec![
+                Panel::new(format!("{what} [{unit}]"), TALL, both),
+                Panel::new(format!("difference [{unit}]"), LOW, off),
+            ],
             windows: Vec::new(),
         }
         .thinned()
     };
     forward.joints.iter().flat_map(move |joint| {
         let torque = joint.torque.as_ref();
-        let torque = torque.map(|torque| chart(&joint.name, "torque", torque));
-        std::iter::once(chart(&joint.name, "position", &joint.position)).chain(torque)
+        let torque = torque.map(|torque| chart(&joint.name, ["torque", "N m, N"], torque));
+        let position = chart(&joint.name, ["position", "rad, m"], &joint.position);
+        std::iter::once(position).chain(torque)
     })
 }
 

@@ -110,12 +110,13 @@ impl IdentificationPage<'_> {
     fn lead(&self) -> String {
         let found = self.found;
         let of = |status| found.parameters.iter().filter(|one| one.status == status).count();
+        let are = |count: usize| format!("{count} {}", if count == 1 { "is" } else { "are" });
         let mut text = format!(
-            "Of {} base parameters {} are identified, {} may be 0, and {} are not excited.",
+            "Of {} base parameters {} identified, {} may be 0, and {} not excited.",
             found.parameters.len(),
-            of(Status::Identified),
+            are(of(Status::Identified)),
             of(Status::Uncertain),
-            of(Status::NotExcited),
+            are(of(Status::NotExcited)),
         );
         if let Some(before) = found.before {
             text += &format!(" With the model's own values {} was left.", percent(before));

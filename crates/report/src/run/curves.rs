@@ -2,6 +2,7 @@
 //! the ground.
 
 use super::beside::{at_times, place_of};
+use super::figures::has_ground;
 use super::{JointCurves, RunPicture, Windowed, force_curves, shown_joints};
 use crate::html::{Chart, ChartCurve, Look, Panel};
 use denavit_plants::PlantModel;
@@ -40,7 +41,9 @@ pub(crate) fn run_charts(model: &PlantModel, log: &Log, beside: Option<&LogBesid
             ChartCurve::new(name.replace('_', " "), Look::Palette, values)
         };
         let panel = Panel::new("force [N]", 150, forces.into_iter().map(curve).collect());
-        charts.push(chart("Normal force of the ground".to_owned(), vec![panel]));
+        // without weight bodies meet each other, and no ground
+        let whose = if has_ground(model) { "of the ground" } else { "between bodies" };
+        charts.push(chart(format!("Normal force {whose}"), vec![panel]));
     }
     charts.into_iter().filter(|chart| chart.x.len() > 1).map(Chart::thinned).collect()
 }

@@ -3,7 +3,7 @@
 
 use super::super::svg::Svg;
 use super::axes::{Axes, Scale, TICK};
-use super::{BLUE, COLOURS, HEADING, SCALE, SIDE, WANTED, WIDTH, draw_legend};
+use super::{APART, BLUE, COLOURS, HEADING, SCALE, SIDE, WANTED, WIDTH, draw_legend};
 use denavit_excite::{Excited, JointUse};
 use denavit_plants::trajectory::{Reference, Setpoint};
 
@@ -20,9 +20,8 @@ pub struct ExcitationPicture<'a> {
 
 const TALL: f64 = 104.0;
 const SHORT: f64 = 52.0;
-const GAP: f64 = 10.0;
 const HISTORY: f64 = 170.0;
-const BLOCK: f64 = 30.0 + TALL + 2.0 * (SHORT + GAP) + 34.0;
+const BLOCK: f64 = 30.0 + TALL + 2.0 * (SHORT + APART) + 40.0;
 /// Points of a curve.
 const POINTS: usize = 800;
 const LIMIT: &str = "stroke=\"#d62728\" stroke-width=\"1\" stroke-dasharray=\"2 3\"";
@@ -98,11 +97,11 @@ fn joint_diagrams(
             axes.curve(svg, &[0.0, end], &[limit, limit], LIMIT);
         }
         axes.curve(svg, times, values, style);
-        y += tall + GAP;
+        y += tall + APART;
     }
-    let legend = [("position, velocity, acceleration", BLUE), ("limits", LIMIT)];
+    let legend = [("position", BLUE), ("its derivatives", GREY), ("limits", LIMIT)];
     draw_legend(svg, [corner[0] + width, corner[1] + 14.0], &legend);
-    svg.label([corner[0] + width, y + 22.0], "end", TICK, "time [s]");
+    svg.label([corner[0] + width, y - APART + 32.0], "end", TICK, "time [s]");
 }
 
 /// log10 of the condition number of every iterate.

@@ -109,6 +109,11 @@ pub(super) fn feet(model: &PlantModel) -> Vec<usize> {
     feet
 }
 
+/// Whether contacts are with a ground: without weight they are between bodies.
+pub(super) fn has_ground(model: &PlantModel) -> bool {
+    norm(model.gravity) > 0.0
+}
+
 /// How many links of a floating base were generated; all but the last are its virtual chain.
 pub(super) fn generated(model: &PlantModel) -> usize {
     model.joints.iter().take_while(|joint| !joint.drivable).count()

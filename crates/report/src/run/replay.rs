@@ -4,7 +4,7 @@
 use super::super::outline::{hull, round_step};
 use super::super::quaternion::pose_of;
 use super::super::space::{LEAST_SIZE_M, Transform, Vec3, add, extent, norm, scale, sub};
-use super::figures::{feet, generated};
+use super::figures::{feet, generated, has_ground};
 use crate::html::{Brief, Mark, Replay, SceneMark, with_decimals};
 use crate::shapes::{Looks, SceneShape};
 use denavit_plants::{Plant, PlantModel};
@@ -305,7 +305,10 @@ fn events(model: &PlantModel, events: &[Event]) -> Vec<EventData> {
     };
     let text = |event: &Event| match event.kind {
         EventKind::Start => "start".to_owned(),
-        EventKind::Touch(at) => format!("{} touches the ground", contact(at)),
+        EventKind::Touch(at) if has_ground(model) => {
+            format!("{} touches the ground", contact(at))
+        }
+        EventKind::Touch(at) => format!("{} meet", contact(at)),
         EventKind::Limit => "a contact opens, or begins to slip".to_owned(),
         EventKind::LeastLoads => "a sole slides on the least loads".to_owned(),
         EventKind::SlipEnds(at) => format!("{} stops slipping", contact(at)),
@@ -338,7 +341,7 @@ fn data(
     let first = frames.first().map_or([0.0; 3], |frame| frame.center);
     let reach = frames.iter().map(|frame| norm(sub(frame.center, first))).fold(0.0, f64::max);
     let triple = |v: Vec3| v.map(|entry| with_decimals(entry, PLACE));
-    let is_walker = !model.contacts.is_empty() && weight > 0.0;
+    let is_walker = !model.contacts.is_empty() && has_ground(model);
     let (forces, force_n) = forces.map_or((None, 1.0), |(all, unit)| (Some(all), unit));
     Data {
         up,

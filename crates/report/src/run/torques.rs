@@ -21,14 +21,16 @@ pub struct TorquePicture<'a> {
 const TALL: f64 = 130.0;
 const BLOCK: f64 = 30.0 + TALL + APART + TORQUE + 36.0;
 
+const FORCES: &str = "N m, N";
+
 /// Samples that a picture shows, at most.
 const DRAWN: usize = 1500;
 
 /// A signal of a joint: two diagrams.
 struct Signal {
     title: String,
-    /// Name of the signal, and of the curve that was not measured.
-    words: [&'static str; 2],
+    /// Name of the signal, its unit, and the curve that was not measured.
+    words: [&'static str; 3],
     /// Time, measured, computed.
     drawn: Vec<[f64; 3]>,
 }
@@ -37,7 +39,7 @@ struct Signal {
 pub fn torque_picture(picture: &TorquePicture<'_>) -> String {
     let signals = picture.validation.joints.iter().map(|joint| Signal {
         title: format!("{}: {}", spaced(&joint.name), left(joint.relative)),
-        words: ["torque", "computed"],
+        words: ["torque", FORCES, "computed"],
         drawn: joint.drawn.clone(),
     });
     signals_picture([picture.title, picture.subtitle], &signals.collect::<Vec<_>>())
@@ -46,20 +48,20 @@ pub fn torque_picture(picture: &TorquePicture<'_>) -> String {
 /// SVG of a log that was simulated again: positions, and torques where they are compared.
 pub fn motion_picture(title: &str, subtitle: &str, forward: &Forward) -> String {
     let stride = forward.t_s.len().div_ceil(DRAWN).max(1);
-    let signal = |joint: &str, word: &'static str, compared: &Compared| {
+    let signal = |joint: &str, [word, unit]: [&'static str; 2], compared: &Compared| {
         let pairs = compared.measured.iter().zip(&compared.simulated);
         let rows = forward.t_s.iter().zip(pairs).step_by(stride);
         Signal {
             title: format!("{}: {}", spaced(joint), left(compared.relative)),
-            words: [word, "simulated"],
+            words: [word, unit, "simulated"],
             drawn: rows.map(|(t, (measured, simulated))| [*t, *measured, *simulated]).collect(),
         }
     };
     let mut signals = Vec::new();
     for joint in &forward.joints {
-        signals.push(signal(&joint.name, "position", &joint.position));
+        signals.push(signal(&joint.name, ["position", "rad, m"], &joint.position));
         let torque = joint.torque.as_ref();
-        signals.extend(torque.map(|torque| signal(&joint.name, "torque", torque)));
+        signals.extend(torque.map(|torque| signal(&joint.name, ["torque", FORCES], torque)));
     }
     signals_picture([title, subtitle], &signals)
 }
@@ -111,7 +113,8 @@ fn diagrams(svg: &mut Svg, signal: &Signal, corner: [f64; 2], width: f64) {
         y: Scale::around(measured.iter().chain(&computed).copied(), 4.0),
     };
     torques.draw(svg, false);
-    torques.name_y(svg, signal.words[0]);
+    let [word, unit, other] = signal.words;
+    torques.name_y(svg, &format!("{word} [{unit}]"));
     torques.curve(svg, &times, &measured, BLUE);
     torques.curve(svg, &times, &computed, WANTED);
     let left = Axes {
@@ -121,9 +124,9 @@ fn diagrams(svg: &mut Svg, signal: &Signal, corner: [f64; 2], width: f64) {
         y: Scale::around(residual.iter().copied(), 2.0),
     };
     left.draw(svg, true);
-    left.name_y(svg, "residual");
+    left.name_y(svg, &format!("residual [{unit}]"));
     left.curve(svg, &times, &residual, GREY);
-    let legend = [("measured", BLUE), (signal.words[1], WANTED), ("residual", GREY)];
+    let legend = [("measured", BLUE), (other, WANTED), ("residual", GREY)];
     draw_legend(svg, [corner[0] + width, corner[1] + 14.0], &legend);
     svg.label([corner[0] + width, left.corner[1] + TORQUE + 32.0], "end", TICK, "time [s]");
 }

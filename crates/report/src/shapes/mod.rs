@@ -116,7 +116,9 @@ fn triangles(one: &LookOfLink, room: usize) -> Result<Vec<Triangle>, String> {
         }
         (DrawnForm::Box(half), _) => solids::block(*half),
         (DrawnForm::Sphere(radius), _) => solids::sphere(*radius),
+        (DrawnForm::Ellipsoid(half), _) => solids::ellipsoid(*half),
         (DrawnForm::Cylinder([radius, half]), _) => solids::cylinder(*radius, *half),
+        (DrawnForm::Capsule([radius, half]), _) => solids::capsule(*radius, *half),
     };
     let placed = &one.shape.placed;
     let put = |corner: Vec3| {

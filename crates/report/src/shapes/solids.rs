@@ -19,11 +19,24 @@ pub(super) fn block(half: Vec3) -> Vec<Triangle> {
 }
 
 pub(super) fn sphere(radius: f64) -> Vec<Triangle> {
-    let ring = |at: usize| {
+    capsule(radius, 0.0)
+}
+
+pub(super) fn ellipsoid(half: Vec3) -> Vec<Triangle> {
+    let scaled = |corner: Vec3| [0, 1, 2].map(|axis| half[axis] * corner[axis]);
+    sphere(1.0).into_iter().map(|corners| corners.map(scaled)).collect()
+}
+
+/// Two half spheres, each so far from the centre, and what is between them.
+pub(super) fn capsule(radius: f64, half: f64) -> Vec<Triangle> {
+    let ring = |at: usize, away: f64| {
         let angle = PI * at as f64 / DOWN as f64;
-        (radius * angle.sin(), radius * angle.cos())
+        (radius * angle.sin(), radius * angle.cos() + away)
     };
-    (0..DOWN).flat_map(|at| band([ring(at), ring(at + 1)])).collect()
+    let upper = (0..=DOWN / 2).map(|at| ring(at, half));
+    let lower = (DOWN / 2..=DOWN).map(|at| ring(at, -half));
+    let rings: Vec<(f64, f64)> = upper.chain(lower).collect();
+    rings.windows(2).flat_map(|pair| band([pair[0], pair[1]])).collect()
 }
 
 pub(super) fn cylinder(radius: f64, half: f64) -> Vec<Triangle> {
@@ -62,6 +75,8 @@ mod tests {
         let whole = 4.0 / 3.0 * PI;
         assert!((volume(&sphere(1.0)) / whole - 1.0).abs() < 0.02);
         assert!((volume(&cylinder(1.0, 0.5)) / PI - 1.0).abs() < 0.01);
+        assert!((volume(&capsule(1.0, 0.5)) / (whole + PI) - 1.0).abs() < 0.02);
+        assert!((volume(&ellipsoid([0.5, 1.0, 1.5])) / (0.75 * whole) - 1.0).abs() < 0.02);
         assert!(sphere(2.0).iter().flatten().all(|corner| (norm(*corner) - 2.0).abs() < 1e-12));
     }
 }

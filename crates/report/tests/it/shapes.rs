@@ -1,4 +1,5 @@
-//! Shapes of links stand where the URDF has them: against a chain of frames that is computed here.
+//! Shapes of links stand where the URDF or the MJCF has them: against a chain of frames that is
+//! computed here.
 
 use denavit_report::inspection_page;
 use denavit_workflow::{Files, RobotFile};
@@ -52,11 +53,10 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// What the page draws, and the page.
-fn page(folder: &Path) -> (Value, String) {
-    let model = folder.join("arm.urdf");
-    let robot = RobotFile::open(&model).expect("a robot").whole;
-    let shapes = Files::default().shapes_of(&model, None, None).expect("shapes");
+/// What the page of a model draws, and the page.
+fn page(model: &Path) -> (Value, String) {
+    let robot = RobotFile::open(model).expect("a robot").whole;
+    let shapes = Files::default().shapes_of(model, None, None).expect("shapes");
     let page = inspection_page(&robot, "0", shapes.as_ref()).expect("a page").render();
     let (_, figure) = page.split_once("<figure class=\"scene\">").expect("a scene");
     let (_, data) = figure.split_once("<script type=\"application/json\">").expect("data");
@@ -165,7 +165,7 @@ fn corners_of_meshes_stand_where_the_urdf_has_them() {
     let folder = folder();
     // of the forearm, whose mesh has no scale: metres
     fs::write(folder.path().join("meshes/wedge.STL"), wedge(0.01)).expect("a mesh");
-    let (data, page) = page(folder.path());
+    let (data, page) = page(&folder.path().join("arm.urdf"));
     let drawn = drawn(&data);
     assert_eq!(drawn.len(), 3);
     let block: Vec<Point> = (0..8)
@@ -187,6 +187,79 @@ fn corners_of_meshes_stand_where_the_urdf_has_them() {
     assert!(page.contains("shapes of the links"));
 }
 
+/// The same arm, with what MuJoCo shows, what it does not, and solids that no URDF has.
+const MJCF: &str = r#"<mujoco model="arm">
+  <compiler angle="radian" eulerseq="XYZ" meshdir="meshes"/>
+  <asset><mesh name="scaled" file="wedge.STL" scale="0.001 0.001 0.002"/><mesh file="wedge.STL"/>
+    <mesh name="typed" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/></asset>
+  <default><geom group="2"/><default class="hit"><geom group="3"/></default></default>
+  <worldbody>
+    <geom type="plane" size="5 5 1"/>
+    <geom type="box" pos="0 0 0.1" size="0.1 0.1 0.1"/>
+    <body name="upper" pos="0 0.1 0.4" euler="0.2 0 -0.7">
+      <inertial pos="0 0 0" mass="2" diaginertia="0.01 0.01 0.01"/>
+      <joint name="shoulder" axis="0 1 0" range="-1 1"/>
+      <geom type="mesh" mesh="scaled" pos="0.01 0.02 0.03" euler="0.4 -0.3 1.1"/>
+      <geom class="hit" type="sphere" size="0.2"/>
+      <geom type="sphere" size="0.3" rgba="1 0 0 0"/>
+      <frame pos="0 0 0.1"><geom type="capsule" size="0.02" fromto="0 0 0 0.3 0 0"/></frame>
+      <geom type="ellipsoid" size="0.1 0.2 0.3" pos="1 0 0"/>
+      <geom type="mesh" mesh="typed"/>
+      <body name="fore" pos="0.3 0.05 0" euler="0 1.2 0.5">
+        <inertial pos="0 0 0" mass="1" diaginertia="0.01 0.01 0.01"/>
+        <joint name="elbow" axis="1 0 0" range="-1 1"/>
+        <geom class="hit" type="mesh" mesh="wedge"/>
+      </body>
+    </body>
+  </worldbody>
+</mujoco>"#;
+
+/// The lowest and the highest entries of each axis.
+fn ends(points: impl Iterator<Item = Point> + Clone) -> [Point; 2] {
+    [f64::min, f64::max].map(|of: fn(f64, f64) -> f64| {
+        [0, 1, 2].map(|k| points.clone().map(|point| point[k]).reduce(of).expect("points"))
+    })
+}
+
+#[test]
+fn geoms_stand_where_the_mjcf_has_them() {
+    let folder = folder();
+    fs::write(folder.path().join("meshes/wedge.STL"), wedge(0.01)).expect("a mesh");
+    let (urdf, _) = page(&folder.path().join("arm.urdf"));
+    let file = folder.path().join("arm.xml");
+    fs::write(&file, MJCF).expect("a file");
+    let (data, said) = page(&file);
+    let (wanted, found) = (drawn(&urdf), drawn(&data));
+    // the block of the world, the mesh of the upper arm, a capsule, an ellipsoid, the other mesh
+    assert_eq!(found.len(), 5);
+    for (own, other) in [(0, 0), (1, 1), (4, 2)] {
+        near(&found[own], &wanted[other], 1e-4);
+    }
+    // back in the frame of the link, which turns about z, y and x
+    let back = |p: &Point| {
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let origin = shoulder([0.0; 3]);
+        axes.map(|axis: Point| {
+            let along = shoulder(axis);
+            (0..3).map(|k| (along[k] - origin[k]) * (p[k] - origin[k])).sum::<f64>()
+        })
+    };
+    let solids = [
+        (2, [[-0.02, -0.02, 0.08], [0.32, 0.02, 0.12]]),
+        (3, [[0.9, -0.2, -0.3], [1.1, 0.2, 0.3]]),
+    ];
+    for (at, wanted) in solids {
+        let [low, high] = ends(found[at].iter().map(back));
+        near(&[low, high], &wanted, 2e-4);
+    }
+    assert!(
+        said.contains(
+            "body <code>upper</code> is not shown: the mesh <code>typed</code> has no file"
+        )
+    );
+    assert_eq!(data["shapes_whole"], false);
+}
+
 #[test]
 fn what_is_no_mesh_is_a_remark_and_the_rows_stay() {
     for (name, contents, said) in [
@@ -201,13 +274,13 @@ fn what_is_no_mesh_is_a_remark_and_the_rows_stay() {
             let long = ARM.replace("scale=\"0.001 0.001 0.002\"", "scale=\"2 1 1\"");
             fs::write(folder.path().join("arm.urdf"), long).expect("a file");
         }
-        let (data, page) = page(folder.path());
+        let (data, page) = page(&folder.path().join("arm.urdf"));
         assert!(page.contains(said), "{said}");
         assert_eq!(data["shapes_whole"], false, "{said}");
     }
     let outside = ARM.replace("meshes/wedge.STL", "../wedge.dae");
     let folder = folder();
     fs::write(folder.path().join("arm.urdf"), outside).expect("a file");
-    let (_, page) = page(folder.path());
+    let (_, page) = page(&folder.path().join("arm.urdf"));
     assert!(page.contains("wedge.dae is not shown: it is not in"));
 }

@@ -81,8 +81,11 @@ function series({ name, look }) {
   const stroke = () => colour(look.colour);
   return {
     label: name,
+    class: look === LOOKS.faint ? "faint" : undefined,
     stroke,
     width: look.width ?? 0,
+    // where it is, not at the nearest pixel: a slope has no steps
+    pxAlign: 0,
     dash: look.dash,
     paths: look.points ? () => null : undefined,
     points: look.points ? { show: true, size: 3, fill: stroke } : { show: false },
@@ -129,6 +132,16 @@ function powers(_, ticks) {
   return ticks.map(tick => (!isLong || isPower(tick) ? tick : null));
 }
 
+/** What differs by less rests: its rounding is not drawn as if it were a signal. */
+const LEAST = 1e-9;
+
+function range(plot, low, high) {
+  if (low === null || high === null) return [low, high];
+  const rests = high - low < Math.max(LEAST, 1e-6 * Math.max(Math.abs(low), Math.abs(high)));
+  const half = Math.max(0.5 * Math.abs(low), 0.5);
+  return rests ? [low - half, high + half] : uPlot.rangeNum(low, high, 0.1, true);
+}
+
 function options(data, panel, { all, bands }, isLast, own, box, width) {
   const many = panel.curves.length > MANY;
   const left = axis(panel.label, true, panel.height);
@@ -137,7 +150,7 @@ function options(data, panel, { all, bands }, isLast, own, box, width) {
     width,
     height: panel.height + (isLast ? 50 : 24),
     padding: [10, 12, isLast ? 0 : 8, 0],
-    scales: { x: { time: false }, y: panel.log ? { distr: 3 } : {} },
+    scales: { x: { time: false }, y: panel.log ? { distr: 3 } : { range } },
     axes: [isLast ? axis(data.x_label, false) : { ...axis("", false), label: undefined, size: 14,
       values: (_, ticks) => ticks.map(() => "") }, left],
     series: [
@@ -204,7 +217,8 @@ function drawChart(figure) {
   const shown = own.plots[0] && { min: own.plots[0].scales.x.min, max: own.plots[0].scales.x.max };
   const plots = data.panels.map((panel, place) => {
     const legend = document.createElement("div");
-    legend.className = "legend";
+    // panels of a chart have their time in common: one of them tells it
+    legend.className = place === 0 ? "legend" : "legend further";
     room.append(legend);
     const isLast = place === data.panels.length - 1;
     const curves = lines(panel);

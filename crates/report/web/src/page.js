@@ -5,7 +5,7 @@ import { makeTabs } from "./tabs.js";
 import { watch } from "./watch.js";
 
 document.querySelectorAll("table.sortable").forEach(makeSortable);
-document.querySelectorAll(".wide:has(> table)").forEach(makeScrollHint);
+document.querySelectorAll(".wide").forEach(makeScrollHint);
 drawCharts(document);
 document.querySelectorAll(".tabs").forEach(makeTabs);
 if (document.documentElement.dataset.watches) watch();

@@ -31,7 +31,7 @@ export function makeSortable(table) {
   }
 }
 
-/** A table that is wider than its frame says so: its edge fades, and words count the columns. */
+/** What is wider than its frame says so: its edge fades, and words count the columns of a table. */
 export function makeScrollHint(box) {
   const hint = document.createElement("p");
   hint.className = "hint";
@@ -40,11 +40,12 @@ export function makeScrollHint(box) {
   const look = () => {
     const edge = box.getBoundingClientRect().right;
     const heads = [...box.querySelectorAll("thead th")];
-    const beyond = box.scrollLeft + box.clientWidth < box.scrollWidth - 1
-      ? heads.filter(head => head.getBoundingClientRect().right > edge + 1).length : 0;
-    box.classList.toggle("more", beyond > 0);
+    const goesOn = box.scrollLeft + box.clientWidth < box.scrollWidth - 1;
+    const beyond = heads.filter(head => head.getBoundingClientRect().right > edge + 1).length;
+    box.classList.toggle("more", goesOn && (beyond > 0 || heads.length === 0));
     const columns = beyond === 1 ? "1 more column" : `${beyond} more columns`;
-    hint.textContent = beyond > 0 ? `${columns} to the right: scroll \u2192` : "";
+    const what = heads.length > 0 ? columns : "more";
+    hint.textContent = box.classList.contains("more") ? `${what} to the right: scroll \u2192` : "";
     hint.hidden = box.scrollWidth <= box.clientWidth + 1;
   };
   box.addEventListener("scroll", look, { passive: true });

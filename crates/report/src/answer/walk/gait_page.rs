@@ -94,9 +94,17 @@ fn joints(scenario: &Scenario, course: &Course) -> String {
 fn table(caption: &str, columns: &[&str], rows: Vec<Vec<String>>) -> HtmlTable {
     let heading =
         |name: &&str| Heading { heading: (*name).to_owned(), is_number: *name != columns[0] };
+    // what begins with a number is one, behind the name of its row
+    let cell = |(at, text): (usize, String)| {
+        let value = text.split(' ').next().and_then(|number| number.parse::<f64>().ok());
+        match value.filter(|_| at > 0) {
+            Some(value) => Cell::number(value, text),
+            None => Cell::text(text),
+        }
+    };
     let row = |cells: Vec<String>| Row {
         is_marked: false,
-        cells: cells.into_iter().map(Cell::text).collect(),
+        cells: cells.into_iter().enumerate().map(cell).collect(),
     };
     HtmlTable {
         caption: caption.to_owned(),
@@ -105,10 +113,23 @@ fn table(caption: &str, columns: &[&str], rows: Vec<Vec<String>>) -> HtmlTable {
     }
 }
 
+/// Points of balance by the names that commands have for them.
+const POINTS: [(&str, &str); 4] = [
+    ("exact", "zero moment point"),
+    ("cart-table", "zero moment point of a cart-table"),
+    ("fri", "foot rotation indicator"),
+    ("capture", "capture point"),
+];
+
 fn margins(judged: &Judged) -> HtmlTable {
     let columns = ["point", "least margin [mm]", "at [s]", "largest [mm]", "outside"];
     let all = [BalanceCriterion::Zmp, BalanceCriterion::Fri, BalanceCriterion::Capture];
-    let rows = all.into_iter().flat_map(|what| margin_cells(what, &judged.course)).collect();
+    let mut rows: Vec<Vec<String>> =
+        all.into_iter().flat_map(|what| margin_cells(what, &judged.course)).collect();
+    for name in rows.iter_mut().filter_map(|row| row.first_mut()) {
+        let words = POINTS.iter().find(|(known, _)| known == name).map(|(_, words)| *words);
+        *name = words.map_or_else(|| name.clone(), str::to_owned);
+    }
     table("Distance from the edge of the support polygon, negative outside.", &columns, rows)
 }
 

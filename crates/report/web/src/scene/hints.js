@@ -1,12 +1,23 @@
 // What is read off a scene: names where frames are, and words of the link that is pointed at.
-import { ArrowHelper, Group, Raycaster, Vector2, Vector3 } from "three";
+import {
+  ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, Quaternion, Raycaster, Vector2,
+  Vector3,
+} from "three";
 
 const AXES = [new Vector3(1, 0, 0), new Vector3(0, 1, 0), new Vector3(0, 0, 1)];
+const UP = new Vector3(0, 1, 0);
 /** Red, green, blue of frames, as the style sheet has them. */
 const COLOURS = ["x", "y", "z"];
 const APART = 14;
 /** How near a frame the pointer must be, in pixels. */
 const REACH = 24;
+
+/** An arrow from the origin along y, of length 1: its shaft and its head. */
+function arrowParts() {
+  const [thick, wide, head] = [0.035, 0.1, 0.28];
+  const shaft = new CylinderGeometry(thick, thick, 1 - head, 8).translate(0, 0.5 * (1 - head), 0);
+  return [shaft, new ConeGeometry(wide, head, 12).translate(0, 1 - 0.5 * head, 0)];
+}
 
 export class Hints {
   constructor(figure, data, robot, stage) {
@@ -14,6 +25,9 @@ export class Hints {
     this.now = figure.querySelector(".now");
     this.box = figure.querySelector(".labels");
     this.group = new Group();
+    // seen through what stands around them: a joint is thicker than a frame is long
+    this.axes = AXES.map(() => new MeshBasicMaterial({ depthTest: false, transparent: true }));
+    this.parts = arrowParts();
     this.frames = data.frames ? data.links.map(link => this.frame(link)) : [];
     this.labels = data.links.map(link => this.label(link));
     this.ray = new Raycaster();
@@ -23,10 +37,17 @@ export class Hints {
 
   frame(link) {
     if (!link.is_body) return null;
-    const length = 0.1 * this.data.size;
-    const arrows = AXES.map(axis =>
-      new ArrowHelper(axis, new Vector3(), length, 0, 0.25 * length, 0.12 * length));
-    const group = new Group().add(...arrows);
+    const length = 5 * this.robot.radius;
+    const group = new Group();
+    AXES.forEach((axis, place) => {
+      for (const part of this.parts) {
+        const mesh = new Mesh(part, this.axes[place]);
+        mesh.quaternion.copy(new Quaternion().setFromUnitVectors(UP, axis));
+        mesh.scale.setScalar(length);
+        mesh.renderOrder = 1;
+        group.add(mesh);
+      }
+    });
     this.group.add(group);
     return group;
   }
@@ -46,9 +67,7 @@ export class Hints {
   }
 
   paint(colour) {
-    for (const frame of this.frames) {
-      frame?.children.forEach((arrow, axis) => arrow.setColor(colour(COLOURS[axis])));
-    }
+    this.axes.forEach((material, axis) => material.color.set(colour(COLOURS[axis])));
   }
 
   /** Where the links are now. */
@@ -94,7 +113,9 @@ export class Hints {
       // at the lower edge they go up instead
       if (y > tall - high) for (y = first; taken.some(meets);) y -= APART;
       taken.push([x, y, long]);
-      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+      // on paper, where the stage has another size, they stay beside what they name
+      label.style.left = `${(100 * x / wide).toFixed(2)}%`;
+      label.style.top = `${(100 * y / tall).toFixed(2)}%`;
     });
   }
 

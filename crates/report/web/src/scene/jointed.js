@@ -1,7 +1,6 @@
 // A robot whose joints are moved here: the rows of its table as transforms at zero, with turns
 // about, or ways along, the z axes of the joints.
 import { Quaternion, Vector3 } from "three";
-import { endsOf } from "./shapes.js";
 
 const Z = new Vector3(0, 0, 1);
 
@@ -53,48 +52,4 @@ export function centerOf(data, poses) {
     mass += link.mass;
   });
   return mass > 0 ? sum.divideScalar(mass) : null;
-}
-
-/** Postures that are looked at where joints are moved by hand: the same ones every time. */
-const POSTURES = 120;
-
-function posture(data, number) {
-  return data.joints.map((joint, place) => {
-    if (!joint.is_shown || number === 0) return joint.start;
-    // evenly spread, each joint by another irrational step
-    const share = (number * Math.sqrt(place + 2)) % 1;
-    return joint.low + share * (joint.high - joint.low);
-  });
-}
-
-/** Size and middle of all that a motion passes, so that it stays in the picture. */
-export function fit(data) {
-  const frames = data.t.length > 0 ? data.t.length : POSTURES;
-  const [low, high] = [Infinity, -Infinity].map(end => new Vector3(end, end, end));
-  const step = Math.max(1, Math.floor(frames / POSTURES));
-  for (let frame = 0; frame < frames; frame += step) {
-    const of = list => positionsAt(data, [frame, 0], list);
-    const moved = data.t.length > 0
-      ? [data.q, data.beside].filter(Boolean).map(of) : [posture(data, frame)];
-    for (const q of moved) {
-      const poses = posesOf(data, q);
-      data.links.forEach((link, place) => {
-        if (!link.is_body) return;
-        low.min(poses[place][0]);
-        high.max(poses[place][0]);
-      });
-      for (const end of endsOf(data, poses)) {
-        low.min(end);
-        high.max(end);
-      }
-    }
-  }
-  if (!data.follows) {
-    low.min(new Vector3(...data.base));
-    high.max(new Vector3(...data.base));
-  }
-  const size = 1.05 * Math.max(...high.clone().sub(low).toArray());
-  if (!(size > 0) || !Number.isFinite(size)) return;
-  data.view = Math.max(size, data.size);
-  data.center = high.add(low).multiplyScalar(0.5).toArray();
 }

@@ -23,7 +23,7 @@ export class Marks {
     this.data = data;
     this.isShown = true;
     const dot = (radius = 0.02) =>
-      new Mesh(new SphereGeometry(radius * data.size, 16, 12), new MeshBasicMaterial());
+      new Mesh(new SphereGeometry(radius * data.view, 16, 12), new MeshBasicMaterial());
     this.parts = { com: new Group(), zmp: new Group(), capture: new Group(), support: new Group(),
       force: new Group() };
     this.com = dot(0.022);

@@ -3,7 +3,7 @@ import { Vector3 } from "three";
 import { Arcs } from "./arcs.js";
 import { between, place, posesOfList } from "./frames.js";
 import { Hints } from "./hints.js";
-import { centerOf, fit, posesOf, positionsAt, startOf } from "./jointed.js";
+import { centerOf, posesOf, positionsAt, startOf } from "./jointed.js";
 import { Marks } from "./marks.js";
 import { Robot } from "./robot.js";
 import { Stage } from "./stage.js";
@@ -16,7 +16,6 @@ class Player {
     this.data = data;
     // joints that are moved here, or poses that were computed beforehand
     this.isJointed = Boolean(data.joints);
-    if (this.isJointed) fit(data);
     this.stage = new Stage(figure.querySelector("canvas"), data);
     this.robot = new Robot(data);
     this.marks = new Marks(data);

@@ -10,7 +10,7 @@ const UP = new Vector3(0, 1, 0);
 const AXIS = new Vector3(0, 0, 1);
 const ROUND = 20;
 /** The radius of a link per size of what is seen. */
-const THICK = 0.018;
+const THICK = 0.015;
 /** A ghost is as much thicker, so that both are seen where they are in one place. */
 const WIDER = 1.2;
 /** What is marked has the colour of faults. */
@@ -70,8 +70,7 @@ export class Robot {
       shape: material() };
     this.materials.shape.flatShading = true;
     // as many pixels in every picture, however far its joints reach
-    const extent = data.view ?? data.size;
-    const radius = THICK * extent * (ghost ? WIDER : 1);
+    const radius = THICK * data.view * (ghost ? WIDER : 1);
     this.radius = radius;
     this.seats = [];
     const { link: body, joint, foot, marked } = this.materials;

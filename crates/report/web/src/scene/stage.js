@@ -4,11 +4,12 @@ import {
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { distance, passed } from "./room.js";
 
 /** From where a run is looked at: ahead, to its side, above. */
 const EYE = [0.55, -1, 0.35];
-const ROOM = 1.45;
-const NEAR = 1.1;
+/** How much is seen from top to bottom [deg]. */
+const ANGLE = 35;
 
 /** A direction given with z upwards, turned to where `up` is. */
 function raised(direction, up) {
@@ -24,21 +25,25 @@ export class Stage {
     this.canvas = canvas;
     this.scene = new Scene();
     const up = new Vector3(...data.up);
-    this.camera = new PerspectiveCamera(35, 1, 0.01 * data.size, 200 * data.size);
+    this.camera = new PerspectiveCamera(ANGLE, 1, 0.01 * data.size, 200 * data.size);
     this.camera.up.copy(up);
     const sun = new DirectionalLight(0xffffff, 2.2);
     sun.position.copy(raised([0.5, -0.8, 1.4], up));
     this.scene.add(new AmbientLight(0xffffff, 1.3), sun);
-    this.ground = this.makeGround(data);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
     this.controls.addEventListener("change", () => this.draw());
     this.target = new Vector3();
-    const far = ((data.follows ? ROOM : NEAR) * (data.view ?? data.size)) / Math.sin((35 * Math.PI) / 360) / 2;
     this.away = data.look
       ? new Vector3(...data.look).addScaledVector(up, 0.25).normalize()
       : raised(data.eye ?? EYE, up);
+    const tan = Math.tan((ANGLE * Math.PI) / 360);
+    const aspect = canvas.clientWidth / canvas.clientHeight || 1;
+    const far = distance(data, passed(data), { away: this.away, up, tan, aspect });
     this.away.multiplyScalar(far);
+    // what is drawn is as thick as the picture is large
+    data.view = 2 * far * tan;
+    this.ground = this.makeGround(data);
     this.home();
   }
 

@@ -4,10 +4,10 @@
 
 use crate::exact::Vector;
 use crate::fault::{Cause, Faults, clip};
+use crate::looks::{LinkForm, LinkShape, TreeLooks};
 use crate::options::{Mimic, Options};
-use crate::place::{Pose, matrix};
+use crate::place::matrix;
 use crate::solid::Solid;
-use crate::tree::Tree;
 use crate::xml::{Element, Source};
 use crate::{Error, Include, layout, mjcf, urdf, with_included};
 use denavit_codegen::model::Report;
@@ -62,26 +62,8 @@ impl DrawnForm {
     }
 }
 
-/// A shape with its pose in the frame of its link, before the link has a row.
-pub(crate) struct LinkShape {
-    pub(crate) place: Pose,
-    pub(crate) form: LinkForm,
-}
-
-pub(crate) enum LinkForm {
-    Solid(Solid),
-    Mesh(String, Vector),
-}
-
 fn numbers(vector: &Vector) -> [f64; 3] {
     vector.each_ref().map(to_f64)
-}
-
-/// A tree, and what its links look like: each by its place in the tree.
-pub(crate) struct TreeLooks {
-    pub(crate) tree: Tree,
-    pub(crate) looks: Vec<(usize, Vec<LinkShape>)>,
-    pub(crate) remarks: Vec<String>,
 }
 
 /// What the links of a description look like: of a URDF their `visual` shapes, or else those that

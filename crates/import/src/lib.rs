@@ -21,6 +21,7 @@ mod export;
 mod fault;
 mod json;
 mod layout;
+mod looks;
 mod mesh;
 mod mjcf;
 mod model;

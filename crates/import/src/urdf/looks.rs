@@ -3,8 +3,8 @@
 use super::contacts::{needed, solid};
 use super::raw;
 use super::values::{Snapped, numbers, pose};
-use crate::drawn::{LinkForm, LinkShape};
 use crate::fault::Faults;
+use crate::looks::{LinkForm, LinkShape};
 use crate::xml::Element;
 use denavit_codegen::number::integer;
 

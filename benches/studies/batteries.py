@@ -4,17 +4,16 @@
     python -m denavit study run blind.json --ray auto -o blind.parquet
     python benches/studies/batteries.py blind.parquet
 
-The study files name ``batteries:blind`` or ``batteries:foreign`` and, as options, the programs, by
-paths from where the study is run: ``target/release`` of the repository, and for the foreign bench
-``foreign/generator``, its folder, and ``foreign/venv``, an environment as benches/foreign/run makes.
-The second command prints the figures of a Parquet file as Markdown, for docs/evidence.
+The study files name ``batteries:blind`` or ``batteries:foreign`` and, as files, the programs: those
+in ``target/release`` of the repository, and for the foreign bench ``foreign/generator``, its folder,
+and ``foreign/venv``, an environment as benches/foreign/run makes. The key of a study has their
+content: rows of another build are another study. The second command prints the figures of a Parquet
+file as Markdown, for docs/evidence.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
-import math
 import os
 import statistics
 import subprocess
@@ -22,25 +21,20 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Iterable
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from denavit import studies
 from denavit.errors import Error, Fault
+from denavit.studies.content import digest_of_path
+from scipy.special import betaincinv
 
 FOREIGN = Path(__file__).parents[1] / "foreign"
 
 
-def _digest(path: str) -> str:
-    """Which build answered, as its file is now."""
-    found = Path(path).stat()
-    return _digest_of(path, found.st_size, found.st_mtime_ns)
-
-
-@lru_cache
-def _digest_of(path: str, *_: int) -> str:
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()[:12]
+def _build(path: str) -> str:
+    """Which build answered."""
+    return digest_of_path(path)[:12]
 
 
 def _run(command: list[str], **more: Any) -> str:
@@ -83,10 +77,10 @@ def _answered(found: dict[str, Any]) -> dict[str, Any]:
     build=str,
 )
 def blind(case: studies.Case) -> studies.Row:
-    """A case of the blind battery. Options: ``battery`` and ``denavit``, the programs, and
+    """A case of the blind battery. Files: ``battery`` and ``denavit``, the programs. Option:
     ``first``, the number of index 0.
     """
-    battery, denavit = case.options["battery"], case.options["denavit"]
+    battery, denavit = case.files["battery"], case.files["denavit"]
     number = int(case.options["first"]) + case.index
     with tempfile.TemporaryDirectory() as inside:
         command = [battery, "--case", str(number), "--out", inside, "--diagnose", denavit]
@@ -102,7 +96,7 @@ def blind(case: studies.Case) -> studies.Row:
         "kind": answer["kind"],
         "hidden": hidden,
         "is_right": said.strip().endswith(": right"),
-        "build": _digest(denavit),
+        "build": _build(denavit),
     } | _answered(found)
 
 
@@ -124,15 +118,15 @@ def blind(case: studies.Case) -> studies.Row:
     build=str,
 )
 def foreign(case: studies.Case) -> studies.Row:
-    """A case of the foreign bench. Options: ``generator``, its folder; ``denavit``, the command;
+    """A case of the foreign bench. Files: ``generator``, its folder; ``denavit``, the command;
     ``venv``, an environment that has MuJoCo and Pinocchio. The seed is that of the study.
     """
-    denavit, generator = case.options["denavit"], case.options["generator"]
+    denavit, generator = case.files["denavit"], case.files["generator"]
     with tempfile.TemporaryDirectory() as inside:
-        told = {"JOBS": "1", "ONLY": str(case.index), "VENV": case.options["venv"]}
+        told = {"JOBS": "1", "ONLY": str(case.index), "VENV": case.files["venv"]}
         command = [str(FOREIGN / "run"), generator, str(case.seed), inside, denavit]
         _run(command, env=os.environ | told)
-        python = str(Path(case.options["venv"]) / "bin" / "python")
+        python = str(Path(case.files["venv"]) / "bin" / "python")
         figures = [python, str(FOREIGN / "figures.py"), "record", generator, inside]
         found = json.loads(_run(figures))
         out = Path(inside)
@@ -150,7 +144,7 @@ def foreign(case: studies.Case) -> studies.Row:
         "counted": [f"{key}: {hits} of {of}" for key, (hits, of) in found["counts"].items()],
         "closed": [round(share, 6) for share in found["closed"]],
         "errors": [round(error, 6) for error in found["errors"]],
-        "build": _digest(denavit),
+        "build": _build(denavit),
     } | _answered(json.loads(text) if text else {})
 
 
@@ -179,13 +173,10 @@ def _line(name: str, hits: int, count: int) -> str:
 
 
 def interval(hits: int, count: int) -> tuple[float, float]:
-    """Wilson's interval of 95 % of a share."""
-    if not count:
-        return 0.0, 1.0
-    z, share = 1.959964, hits / count
-    centre = (share + z * z / (2 * count)) / (1 + z * z / count)
-    half = z * math.sqrt(share * (1 - share) / count + z * z / (4 * count**2)) / (1 + z * z / count)
-    return max(0.0, centre - half), min(1.0, centre + half)
+    """Exact interval of 95 % of a share (Clopper, Pearson 1934), as of all other pages."""
+    low = float(betaincinv(hits, count - hits + 1, 0.025)) if hits else 0.0
+    high = float(betaincinv(hits + 1, count - hits, 0.975)) if hits < count else 1.0
+    return low, high
 
 
 def figures(rows: Iterable[dict[str, Any]], key: str) -> list[str]:

@@ -40,7 +40,9 @@ def _parser() -> argparse.ArgumentParser:
         "--part", type=_share, metavar="K/N", help="part K, from 0, of N: for arrays of jobs"
     )
     where = run.add_mutually_exclusive_group()
-    where.add_argument("--workers", type=int, default=1, metavar="N", help="processes, here")
+    where.add_argument(
+        "--workers", type=command.count, default=1, metavar="N", help="processes, here"
+    )
     where.add_argument(
         "--ray", nargs="?", const="local", metavar="ADDRESS",
         help="on Ray: of this address, `auto` for the cluster that runs here, or started here",
@@ -70,7 +72,7 @@ def _run(given: argparse.Namespace) -> int:
     if given.part is not None:
         part, parts = given.part
         indices = range(study.count * part // parts, study.count * (part + 1) // parts)
-    runner = in_process if given.workers <= 1 else in_processes(given.workers)
+    runner = in_process if given.workers == 1 else in_processes(given.workers)
     if given.ray is not None:
         runner = on_ray(None if given.ray == "local" else given.ray)
     all_rows = study.count if indices is None else len(indices)
@@ -82,6 +84,10 @@ def _run(given: argparse.Namespace) -> int:
 
         computed = studies.run(study, given.output, indices, runner=runner, progress=show)
     print(f"{given.output}: {all_rows} rows, {computed} computed now")
+    left = studies.again(given.output)
+    if left:
+        said = f"{len(left)} could not be read and are computed again by the same command"
+        print(said, file=sys.stderr)
     failed = _failed(given.output)
     return 1 if all_rows and failed == all_rows else 0
 
@@ -136,6 +142,9 @@ def main(arguments: list[str] | None = None) -> int:
     except (ValueError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print("stopped. What is computed is kept: the same command goes on", file=sys.stderr)
+        return 130
     return code
 
 

@@ -10,11 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from . import _options
+from . import _arrow, _options
 from ._arrays import Array
 from ._options import Columns, PathLike
-from .errors import _argument
+from .errors import Error, Fault, _argument
 from .simulate import Run
+
+
+PARQUET, ARROW = b"PAR1", b"ARROW1"
+"""First bytes of files that pyarrow reads, and the compiled part does not."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +52,11 @@ def given(**options: Any) -> tuple[list[str], list[Columns]]:
             name = f"{option}[{at}]" if is_list else option
             columns = _columns(log)
             if columns is None:
-                arguments.append(_options.place(log, f"`{name}`"))
+                place = _options.place(log, f"`{name}`")
+                log = _table_of(place) or place
+                columns = _columns(log)
+            if columns is None:
+                arguments.append(place)
             else:
                 named = [(column, _column(name, column, values)) for column, values in columns]
                 # the name stands for what is in memory
@@ -58,11 +66,21 @@ def given(**options: Any) -> tuple[list[str], list[Columns]]:
     return arguments, memory
 
 
-def header_of(schema: Any) -> list[tuple[str, str]]:
-    """What a Parquet file says of itself, by its schema in Arrow."""
-    said = sorted((schema.metadata or {}).items())
-    said = [one for one in said if one[0] not in (b"pandas", b"ARROW:schema")]
-    return [(key.decode(errors="replace"), value.decode(errors="replace")) for key, value in said]
+def _table_of(path: str) -> Table | None:
+    """A file of columns that pyarrow reads (Parquet, Arrow), as a table; None of any other file."""
+    try:
+        with open(path, "rb") if Path(path).is_file() else io.BytesIO() as file:
+            magic = file.read(6)
+    except OSError:
+        return None  # whoever reads it says so
+    if magic[:4] != PARQUET and magic != ARROW:
+        return None
+    pa = _arrow.arrow()
+    try:
+        table = _arrow.read_table(path, is_parquet=magic != ARROW)
+        return Table(path, _arrow.header_of(table.schema), _arrow.columns(table))
+    except (pa.ArrowException, OSError, ValueError) as error:
+        raise Error([Fault(path, None, None, f"cannot be read: {error}", None)]) from None
 
 
 def for_workers(**options: Any) -> tuple[list[str], list[Columns]]:

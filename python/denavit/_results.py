@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import Any, TypeVar
 
+from ._words import by_keyword
 from .errors import Fault, MissingPackage
 
 T = TypeVar("T")
@@ -37,7 +38,7 @@ def _value(given: Any, kind: type[Any] | None) -> Any:
         return tuple(_value(one, kind) for one in given)
     if kind is not None and isinstance(given, dict):
         return read(kind, given)
-    return given
+    return by_keyword(given) if isinstance(given, str) else given
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,7 +70,8 @@ class Answer:
 def answer(kind: type[T], found: tuple[dict[str, Any], bool, list[str]], **more: Any) -> T:
     """A result of what the command answered."""
     given, is_good, notes = found
-    return read(kind, given, is_good=is_good, notes=tuple(notes), json=given, **more)
+    said = tuple(by_keyword(note) for note in notes)
+    return read(kind, given, is_good=is_good, notes=said, json=given, **more)
 
 
 def frame(rows: Sequence[Mapping[str, Any]]) -> Any:

@@ -37,6 +37,10 @@ class Error(Exception):
         super().__init__("\n".join(str(fault) for fault in faults))
         self.faults = tuple(faults)
 
+    def __reduce__(self) -> tuple[type[Error], tuple[list[Fault]]]:
+        """As other processes raise it: from its faults, and not from their text."""
+        return type(self), (list(self.faults),)
+
     def _with(self, name: str, folder: str) -> Error:
         """The same, where a folder is called otherwise."""
 

@@ -21,13 +21,13 @@ import numpy as np
 
 from . import _logs, _options, studies
 from ._arrays import Array
+from ._arrow import arrow, header_of
 from ._options import Columns, PathLike, Progress
 from ._results import answer
 from .errors import Error, Fault, _argument
 from .identify import Identification, answered_with_model, updated_model
 from .model import Model, as_place, load
 from .studies.here import Runner, in_process
-from .studies.parts import arrow
 
 USUAL_HEAD = 1 << 19
 """Rows of a head if nothing is said."""
@@ -48,10 +48,15 @@ class _Table:
     def __init__(self, path: Path) -> None:
         parquet = arrow().parquet
         try:
+            path.open("rb").close()
+        except OSError as error:
+            raise _unread(path, error) from None
+        try:
             self.file = parquet.ParquetFile(path)
         except (OSError, ValueError) as error:
             cause = f"cannot be read as Parquet: {error}"
-            raise Error([Fault(str(path), None, None, cause, None)]) from None
+            hint = "tables of pandas and pyarrow write it; `denavit identify --long` reads CSV"
+            raise Error([Fault(str(path), None, None, cause, hint)]) from None
         self.path = path
         self.bytes = path.stat().st_size
         self.rows = int(self.file.metadata.num_rows)
@@ -62,7 +67,7 @@ class _Table:
         self.names = [name for name, kind in self.kinds.items() if kind.startswith(NUMBERS)]
         if len(self.kinds) < len(self.file.schema_arrow):
             raise Error([Fault(str(path), None, None, "has two columns of one name", None)])
-        self.header = _logs.header_of(self.file.schema_arrow)
+        self.header = header_of(self.file.schema_arrow)
         self.epochs: dict[str, int] = {}
         if self.rows == 0:
             raise Error([Fault(str(path), None, None, "has no rows", None)])
@@ -74,13 +79,16 @@ class _Table:
         at = int(self.ends[first - 1]) if first else 0
         held: dict[str, list[Array]] = {name: [] for name in self.names}
         groups = list(range(first, last + 1))
-        for batch in self.file.iter_batches(BATCH, row_groups=groups, columns=self.names):
-            rows = slice(max(0, start - at), max(0, end - at))
-            at += batch.num_rows
-            for name in self.names:
-                held[name].append(self._numbers(name, batch.column(name))[rows])
-            if at >= end:
-                break
+        try:
+            for batch in self.file.iter_batches(BATCH, row_groups=groups, columns=self.names):
+                rows = slice(max(0, start - at), max(0, end - at))
+                at += batch.num_rows
+                for name in self.names:
+                    held[name].append(self._numbers(name, batch.column(name))[rows])
+                if at >= end:
+                    break
+        except OSError as error:
+            raise _unread(self.path, error) from None
         return {name: np.concatenate(parts) for name, parts in held.items()}
 
     def _numbers(self, name: str, column: Any) -> Array:
@@ -97,6 +105,12 @@ class _Table:
         return np.asarray((nanoseconds - self.epochs[name]) / 1e9, dtype=np.float64)
 
 
+def _unread(path: Path, error: OSError) -> studies.PassingError:
+    """The exception of a file that cannot be read now: a piece of it is tried again."""
+    fault = Fault(str(path), None, None, f"cannot be read: {error}", "check the path and the disk")
+    return studies.PassingError([fault])
+
+
 def _table(path: Path) -> _Table:
     return _opened(path, _stamp(path))
 
@@ -111,8 +125,7 @@ def _stamp(path: Path) -> tuple[int, ...]:
     try:
         found = path.stat()
     except OSError as error:
-        cause = f"cannot be read: {error.strerror}"
-        raise Error([Fault(str(path), None, None, cause, "check the path")]) from None
+        raise _unread(path, error) from None
     return found.st_size, found.st_mtime_ns
 
 
@@ -185,11 +198,7 @@ def identify_long(
     ``friction``, ``joint_parameters``, ``keep``, ``prior``, ``resolution``, ``accept_suspicious``.
     Rows stand at equal distances of time.
     """
-    if isinstance(head, bool) or not isinstance(head, int) or head < FEWEST:
-        raise _argument(f"`head` is {head!r}", f"a number of rows, {FEWEST} or more")
-    table = _table(Path(_options.place(log, "`log`")).resolve())
-    if time not in table.names:
-        raise _argument(f"`{table.path.name}` has no column of numbers `{time}`", "`time` names it")
+    table = _long_table(log, head, time)
     robot = model if isinstance(model, Model) else load(model)
     with _options.folder() as inside:
         effects, place = as_place(robot, inside)
@@ -229,6 +238,20 @@ def identify_long(
     return answer(Identification, found, updated=updated, update_refused=refused)
 
 
+def _long_table(log: PathLike, head: int, time: str) -> _Table:
+    """The log, which is longer than its head."""
+    if isinstance(head, bool) or not isinstance(head, int) or head < FEWEST:
+        raise _argument(f"`head` is {head!r}", f"a number of rows, {FEWEST} or more")
+    table = _table(Path(_options.place(log, "`log`")).resolve())
+    if table.rows <= head:
+        cause = f"its {table.rows} rows are no more than those of its head, {head}"
+        hint = "denavit.identify holds a log as a whole; or choose a smaller `head`"
+        raise Error([Fault(str(table.path), None, None, cause, hint)])
+    if time not in table.names:
+        raise _argument(f"`{table.path.name}` has no column of numbers `{time}`", "`time` names it")
+    return table
+
+
 OPTIONS = (
     "method", "errors", "seed", "keep", "friction", "skip_slow", "filter_hz", "decimate", "rates",
     "prior", "resolution", "accept_suspicious", "joint_parameters",
@@ -251,7 +274,9 @@ def _computed(
 ) -> Iterator[studies.Row]:
     """Rows of all pieces in their order."""
     with tempfile.TemporaryDirectory(prefix="denavit-") as inside:
-        kept = Path(inside) / "rows.parquet" if part is None else Path(part)
+        kept = Path(inside) / "rows.parquet"
+        if part is not None:
+            kept = Path(_options.place(part, "`part`"))
 
         def told(done: int, count: int) -> None:
             if progress is not None:

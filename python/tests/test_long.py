@@ -1,9 +1,12 @@
 """A log that is read piece by piece gives the numbers of one that is held as a whole."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 import denavit
+from denavit._words import by_keyword
 from denavit.errors import Error
 from denavit.fleet import example
 from denavit.long import identify_long
@@ -150,6 +153,9 @@ def test_what_is_no_long_log(columns, log, tmp_path):
     for head in (2.5, True, 10):
         with pytest.raises(denavit.ArgumentError, match="`head` is"):
             identify_long(example.NOMINAL, log, head=head)
+    for part in (5, "", tmp_path):
+        with pytest.raises(Error, match="`part`|no part of a study"):
+            identify_long(example.NOMINAL, log, head=HEAD, part=part, **FILTERED)
     twice = pyarrow.table([columns["t"], columns["t"]], names=["t", "t"])
     parquet.write_table(twice, tmp_path / "twice.parquet")
     with pytest.raises(Error, match="two columns of one name"):
@@ -226,3 +232,51 @@ def test_rows_of_other_judges_are_not_taken(columns, log, tmp_path):
     assert not judged(400_000).is_good
     with pytest.raises(Error, match="study"):
         judged(200_000)
+
+
+def test_pieces_of_another_log_of_equal_length_are_refused(columns, log, tmp_path):
+    """As where a node has another file at the same path, and the pieces go together in numbers."""
+    other = {name: values * (1.1 if name.startswith("tau") else 1.0)
+             for name, values in columns.items()}  # fmt: skip
+    path = tmp_path / "arm.parquet"
+    parquet.write_table(pyarrow.table(other), path, row_group_size=50_000)
+
+    def from_other(pieces):
+        def mixed(study, indices):
+            stamp = [path.stat().st_size, path.stat().st_mtime_ns]
+            options = {**study.options, "log": str(path), "stamp": stamp}
+            of_other = dataclasses.replace(study, options=options)
+            return ((of_other if index in pieces else study).row(index) for index in indices)
+
+        return mixed
+
+    for pieces, said in (
+        ({1}, "piece 1 was condensed from another log than the piece before it"),
+        ({2}, "piece 2 was condensed from another log than the piece before it"),
+        ({0, 1, 2}, "piece 0 was condensed from another log than the head"),
+    ):
+        with pytest.raises(Error, match=said) as error:
+            identify_long(example.NOMINAL, log, head=HEAD, runner=from_other(pieces), **FILTERED)
+        assert "condense it again" in (error.value.hint or "")
+
+
+def test_a_judge_may_be_parquet(columns, tmp_path):
+    judge = {name: values[:20_000] for name, values in columns.items()}
+    train = {name: values[100_000:150_000] for name, values in columns.items()}
+    direct = denavit.identify(example.NOMINAL, train, judge, **FILTERED)
+    parquet.write_table(pyarrow.table(judge), tmp_path / "judge.parquet")
+    with pyarrow.ipc.new_file(tmp_path / "judge.arrow", pyarrow.table(judge).schema) as file:
+        file.write_table(pyarrow.table(judge))
+    for name in ("judge.parquet", "judge.arrow"):
+        found = denavit.identify(example.NOMINAL, train, tmp_path / name, **FILTERED)
+        assert found.parameters == direct.parameters and found.residual == direct.residual
+    (tmp_path / "cut.parquet").write_bytes((tmp_path / "judge.parquet").read_bytes()[:5000])
+    with pytest.raises(Error, match="cut.parquet: cannot be read"):
+        denavit.identify(example.NOMINAL, train, tmp_path / "cut.parquet", **FILTERED)
+
+
+def test_remarks_name_keywords():
+    said = "lower (`conditions.filter`, `options.method=iv`, `options.seed=3`); `logs.accepts_cut`"
+    expected = 'lower (`filter_hz`, `method="iv"`, `seed=3`); `accept_cut`'
+    assert by_keyword(said) == expected
+    assert by_keyword("`a.b` `options` options.x") == "`a.b` `options` options.x"

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -13,8 +14,10 @@ import pytest
 
 from denavit import studies, walk
 from denavit.__main__ import main
+from denavit.errors import ArgumentError, Error, Fault
 from denavit.studies.cases import plain
-from denavit.studies.here import in_processes
+from denavit.studies.content import digest_of_path
+from denavit.studies.here import in_process, in_processes
 from denavit.studies.parts import Part, journal, noted
 
 pytest.importorskip("pyarrow")
@@ -240,3 +243,202 @@ def test_rows_without_an_answer_are_told(study_file, tmp_path, capsys):
     # all of them: nothing was computed
     assert main(["study", "run", str(study_file), "--range", "5:6", "-o", str(tmp_path / "q")]) == 1
 
+
+
+UNREAD = """
+from pathlib import Path
+from denavit import studies
+from denavit.errors import Fault
+
+@studies.rows(value=int)
+def read(case):
+    place = Path(case.options["folder"]) / str(case.index)
+    if not place.is_file():
+        fault = Fault(str(place), None, None, "cannot be read: no route to host", None)
+        raise studies.PassingError([fault])
+    return {"value": int(place.read_text())}
+"""
+
+
+def own_module(tmp_path, monkeypatch, text):
+    """A module of functions that workers can import, too."""
+    name = f"own_{tmp_path.name}_{os.getpid()}".replace("-", "_")
+    (tmp_path / f"{name}.py").write_text(text)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    return name
+
+
+def test_what_cannot_be_read_now_is_read_by_the_next_run(tmp_path, monkeypatch, capsys):
+    module = own_module(tmp_path, monkeypatch, UNREAD)
+    for index in (0, 2):
+        (tmp_path / str(index)).write_text(f"{10 * index}\n")
+    file, out = tmp_path / "study.json", tmp_path / "rows.parquet"
+    said = {"format": "denavit-study/1", "name": "read", "count": 3, "function": f"{module}:read"}
+    file.write_text(json.dumps(said | {"options": {"folder": str(tmp_path)}}))
+    assert main(["study", "run", str(file), "-o", str(out)]) == 0
+    assert "1 could not be read and are computed again" in capsys.readouterr().err
+    rows = studies.read_part(out).to_pylist()
+    assert [row["value"] for row in rows] == [0, None, 20]
+    assert "no route to host" in rows[1]["failure"] and studies.again(out) == [1]
+    study = studies.read_study(file)
+    assert studies.missing([out], study) == [(0, 3)]
+    with pytest.raises(studies.StudyError, match="could not be read"):
+        studies.merge([out], tmp_path / "merged.parquet")
+    (tmp_path / "1").write_text("10")
+    (tmp_path / "0").unlink()  # what has an answer is not read again
+    assert studies.run(study, out) == 1 and studies.again(out) == []
+    assert [row["value"] for row in studies.read_part(out).to_pylist()] == [0, 10, 20]
+    # the same bytes as of a run that read all at once
+    (tmp_path / "0").write_text("0")
+    studies.run(study, tmp_path / "other.parquet")
+    assert out.read_bytes() == (tmp_path / "other.parquet").read_bytes()
+
+
+BUILDS = """
+import subprocess
+from denavit import studies
+
+@studies.rows(said=str)
+def asked(case):
+    return {"said": subprocess.check_output(["sh", case.files["program"]], text=True).strip()}
+"""
+
+
+def test_rows_of_two_builds_of_a_program_are_not_mixed(tmp_path, monkeypatch, capsys):
+    module = own_module(tmp_path, monkeypatch, BUILDS)
+    program, out = tmp_path / "program", tmp_path / "rows.parquet"
+    program.write_text("echo first")
+    file = tmp_path / "study.json"
+    said = {"format": "denavit-study/1", "name": "builds", "count": 4}
+    said |= {"function": f"{module}:asked", "files": {"program": "program"}}
+    file.write_text(json.dumps(said))
+    study = studies.read_study(file)
+    rows = studies.computed(study, [0, 1])
+    with journal(Part(study, 0, 4, out)) as (_, journalled):
+        for row in rows:
+            noted(journalled, row)
+    # the program is built anew: neither the journal nor a part of before is gone on with
+    program.write_text("echo other")
+    assert main(["study", "run", str(file), "-o", str(out)]) == 2
+    text = capsys.readouterr().err
+    assert "the file `program` changed" in text and "hint: name another file" in text
+    # nor does a study that runs take the new one
+    with pytest.raises(Error, match="the file `program` changed since"):
+        studies.run(study, out)
+    program.write_text("echo first")
+    assert studies.run(study, out) == 2
+    program.write_text("echo other")
+    assert main(["study", "run", str(file), "-o", str(out)]) == 2
+    assert "the file `program` changed" in capsys.readouterr().err
+    for runner in (in_process, in_processes(2)):
+        with pytest.raises(Error, match="the file `program` changed since"):
+            list(runner(study, range(2)))
+    program.unlink()
+    assert main(["study", "run", str(file), "-o", str(out)]) == 2
+    assert "program: cannot be read" in capsys.readouterr().err
+
+
+def test_folders_are_named_by_all_that_they_hold(tmp_path):
+    folder = tmp_path / "folder"
+    (folder / "in").mkdir(parents=True)
+    (folder / "in" / "a").write_text("1")
+    names = [digest_of_path(folder)]
+    (folder / "in" / "a").write_text("12")
+    names.append(digest_of_path(folder))
+    (folder / "in" / "a").rename(folder / "b")
+    names.append(digest_of_path(folder))
+    assert len(set(names)) == 3
+    (folder / "__pycache__").mkdir()
+    (folder / "__pycache__" / "a.pyc").write_text("made")
+    assert digest_of_path(folder) == names[-1]
+
+
+def test_workers_end_with_the_process_that_started_them(study_file, tmp_path):
+    """And not at the end of rows that nobody waits for."""
+    changed(study_file, options={"wait_s": 30.0})
+    command = [sys.executable, "-m", "denavit", "study", "run", str(study_file), "--workers", "2"]
+    process = subprocess.Popen([*command, "-o", str(tmp_path / "rows.parquet")])
+
+    def workers():
+        found = []
+        for stat in Path("/proc").glob("[0-9]*/cmdline"):
+            try:
+                text = stat.read_bytes()
+            except OSError:
+                continue
+            if b"spawn_main" in text and f"parent_pid={process.pid}".encode() in text:
+                found.append(stat)
+        return found
+
+    until = time.monotonic() + 60
+    while len(workers()) < 2:
+        assert time.monotonic() < until and process.poll() is None
+        time.sleep(0.05)
+    time.sleep(1.0)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    until = time.monotonic() + 10
+    while workers():
+        assert time.monotonic() < until, "workers outlive their driver"
+        time.sleep(0.05)
+
+
+def test_ctrl_c_says_one_sentence(study_file, tmp_path):
+    changed(study_file, options={"wait_s": 20.0})
+    command = [sys.executable, "-m", "denavit", "study", "run", str(study_file), "--workers", "2"]
+    process = subprocess.Popen(
+        [*command, "-o", str(tmp_path / "rows.parquet")], stderr=subprocess.PIPE, text=True,
+        start_new_session=True,
+    )  # fmt: skip
+    until = time.monotonic() + 60
+    while not (tmp_path / "rows.parquet.rows").exists():
+        assert time.monotonic() < until and process.poll() is None
+        time.sleep(0.05)
+    time.sleep(3.0)
+    os.killpg(process.pid, signal.SIGINT)
+    _, text = process.communicate(timeout=15)
+    assert process.returncode == 130 and "Traceback" not in text, text
+    assert "the same command goes on" in text
+
+
+def test_odd_arguments_of_studies_are_refused(study_file, tmp_path, capsys):
+    study = studies.read_study(study_file)
+    out = str(tmp_path / "rows.parquet")
+    for workers in ("0", "-1", "two"):
+        with pytest.raises(SystemExit):
+            main(["study", "run", str(study_file), "--workers", workers, "-o", out])
+        assert "1 or more" in capsys.readouterr().err
+    for number in (0, 1.5, True):
+        with pytest.raises(ArgumentError, match="`workers` is"):
+            in_processes(number)
+    with pytest.raises(ArgumentError, match=r"`options\['wait_s'\]`"):
+        studies.Study("squares", study.function, 3, options={"wait_s": math.nan})
+    text = study_file.read_text()
+    study_file.write_text(text.replace('"options": {}', '"options": {"wait_s": NaN}'))
+    assert main(["study", "run", str(study_file), "-o", out]) == 2
+    assert "squares.json: is no JSON: NaN" in capsys.readouterr().err
+    with pytest.raises(ArgumentError, match="`out`"):
+        studies.run(study, 5)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(studies.StudyError, match="folder cannot be made"):
+        studies.run(study, tmp_path / "file" / "rows.parquet")
+    with pytest.raises(studies.StudyError, match="no part of a study"):
+        studies.run(study, tmp_path)
+
+
+def test_errors_are_themselves_in_other_processes():
+    fault = Fault("a.csv", 3, None, "is cut", "write it again")
+    for kind in (Error, studies.StudyError, studies.PassingError):
+        again = pickle.loads(pickle.dumps(kind([fault, fault])))
+        assert type(again) is kind and again.faults == (fault, fault)
+
+
+def test_no_cluster_of_ray_is_said():
+    pytest.importorskip("ray")
+    from denavit.studies.on_ray import on_ray
+
+    study = studies.Study("push", studies.ready.push, 1)
+    with pytest.raises(Error, match="no cluster of Ray answers") as error:
+        list(on_ray("127.0.0.1:1")(study, range(1)))
+    assert "ray start --head" in (error.value.hint or "")

@@ -66,8 +66,11 @@ pub(crate) mod overlap {
     /// torques: digits. Torques that were measured twice differ by their noise.
     pub(crate) const SAME: f64 = 1e-3;
 
-    /// The least overlap, of the samples of the shorter log.
+    /// The least overlap of logs that say little more than one, of the samples of the shorter log,
     pub(crate) const OVERLAP: f64 = 0.3;
+
+    /// and of a log that does not judge the other one.
+    pub(crate) const PART: f64 = 0.05;
 
     /// The spread of a position in the overlap, of that in the log, that at least one joint has.
     pub(crate) const MOVES: f64 = 0.1;

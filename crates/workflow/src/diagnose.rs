@@ -275,7 +275,7 @@ fn searched_again(
     let searched: Vec<Conditioned> = sets.train.iter().filter_map(as_it_is).collect();
     let judging = sets.held_out.iter().filter_map(as_it_is);
     let same = judging.filter_map(|log| {
-        let other = searched.iter().find(|other| other.overlaps(&log))?.file.clone();
+        let other = searched.iter().find(|other| other.shares_a_part(&log))?.file.clone();
         Some((log.file, LogRemark::SameAs { other }))
     });
     same.collect()

@@ -13,8 +13,15 @@ from typing import Any
 from .._progress import ProgressLine
 from ..studies.here import Runner, in_process, in_processes
 from ..studies.on_ray import connected, on_ray, ray_package
-from .engine import Options
+from .engine import Fleet, Options, Outcome
 from .sources import FleetError, fault
+
+
+def count(text: str) -> int:
+    """How many processes."""
+    if not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is no number of processes, 1 or more")
+    return int(text)
 
 
 def add(commands: Any) -> None:
@@ -22,7 +29,7 @@ def add(commands: Any) -> None:
     fleet = commands.add_parser("fleet", help="judge every robot in every night")
     fleet.add_argument("logs", metavar="LOGS", help="a folder, a URI, or a manifest")
     fleet.add_argument("--model-by", type=Path, required=True, metavar="FILE",
-                       help="a model, or JSON of robots and their models")  # fmt: skip
+                       help="a model, its shipped name, or JSON of robots and models")  # fmt: skip
     fleet.add_argument("-o", "--output", type=Path, required=True, help="folder of the answers")
     fleet.add_argument("--columns", type=Path, metavar="MAP", help="map of the columns of logs")
     fleet.add_argument("--restart", action="append", default=[], metavar="ROBOT=NIGHT",
@@ -50,7 +57,7 @@ def _judging(parser: argparse.ArgumentParser) -> None:
                         help="which diagnoses get a page: those of alarms")  # fmt: skip
     parser.add_argument("--open", action="store_true", help="show the page in a browser")
     where = parser.add_mutually_exclusive_group()
-    where.add_argument("--workers", type=int, default=1, metavar="N", help="processes, here")
+    where.add_argument("--workers", type=count, default=1, metavar="N", help="processes, here")
     where.add_argument("--ray", nargs="?", const="local", metavar="ADDRESS",
                        help="on Ray: of this address, `auto`, or started here")  # fmt: skip
 
@@ -61,7 +68,7 @@ def _runner(given: argparse.Namespace) -> Iterator[Runner]:
         with connected(None if given.ray == "local" else given.ray):
             yield on_ray()
     else:
-        yield in_process if given.workers <= 1 else in_processes(given.workers)
+        yield in_process if given.workers == 1 else in_processes(given.workers)
 
 
 def _fleet(given: argparse.Namespace) -> int:
@@ -94,22 +101,42 @@ def _judged(
             line.show(f"{night}: {what} {done} of {count}")
 
         fleet = judge(logs, models, out, runner=runner, options=options, progress=show)
-    last = [one for one in fleet.outcomes if one.night == fleet.nights[-1]]
-    alarms = [one for one in last if one.is_alarm]
-    silent = [one for one in last if one.reason]
-    count = "1 alarm" if len(alarms) == 1 else f"{len(alarms)} alarms"
-    print(f"{len(fleet.robots)} robots, {len(fleet.nights)} nights")
-    print(f"{fleet.nights[-1]}: {count}, {len(silent)} without an answer")
-    for one in sorted(alarms, key=lambda one: (one.judged.p if one.judged else 1.0, one.robot)):
-        found = one.diagnosed or {}
-        name = f"{found['effect']} at {found['joint']}" if found.get("effect") else "nothing named"
-        print(f"  {one.robot}: {name}")
-    for one in silent:
-        print(f"  {one.robot}: {(one.reason or '').splitlines()[0]}")
+    code = _said(fleet)
     print(out / "index.html")
     if given.open:
         webbrowser.open((out / "index.html").resolve().as_uri())
-    return 1 if alarms or silent else 0
+    return code
+
+
+def _said(fleet: Fleet) -> int:
+    """Prints the newest night; 1 if someone has to look at it."""
+    night, standing = fleet.nights[-1], fleet.standing()
+    last = [one for one in fleet.outcomes if one.night == night]
+    alarms = [one for one in last if one.is_alarm]
+    earlier = [one for one in standing.values() if one.night != night]
+    silent = [one for one in last if one.reason and one.has_log]
+    gone = [one for one in last if not one.has_log]
+    count = "1 alarm" if len(alarms) == 1 else f"{len(alarms)} alarms"
+    said = [count, f"{len(silent)} without an answer"]
+    if gone:
+        said.append(f"{len(gone)} without a log")
+    if earlier:
+        said.append(f"{len(earlier)} of them with an alarm from before")
+    print(f"{len(fleet.robots)} robots, {len(fleet.nights)} nights")
+    print(f"{night}: {', '.join(said)}")
+    for one in sorted(alarms, key=lambda one: (one.judged.p if one.judged else 1.0, one.robot)):
+        print(f"  {one.robot}: {_named(one)}")
+    for one in earlier:
+        print(f"  {one.robot}: {_named(one)}, alarm of {one.night}, no answer since")
+    for one in silent + gone:
+        first = (one.reason or "").splitlines()[0]
+        print(f"  {first}" if first.startswith(f"{one.robot}:") else f"  {one.robot}: {first}")
+    return 1 if alarms or silent or gone else 0
+
+
+def _named(one: Outcome) -> str:
+    found = one.diagnosed or {}
+    return f"{found['effect']} at {found['joint']}" if found.get("effect") else "nothing named"
 
 
 def _example(given: argparse.Namespace) -> int:

@@ -19,7 +19,7 @@ from ..studies import Study, read_part
 from ..studies.cases import Function
 from ..studies.here import Runner, in_process
 from ..studies.here import run as run_study
-from ..studies.study import digest
+from ..studies.content import digest
 from .changes import Estimate, History, Judged, Night, Verdicts, judged, less_common
 from .models import read_models, widened
 from .night import diagnosed, identified
@@ -61,11 +61,21 @@ class Outcome:
     units: Mapping[str, str]
     common: Mapping[str, float]
     """What the whole fleet did to these values."""
+    has_log: bool = True
+    """Whether the robot has logged in this night."""
 
     @property
     def is_alarm(self) -> bool:
         """Whether it is an alarm of its night."""
         return self.judged is not None and self.judged.is_alarm
+
+    @classmethod
+    def without_log(cls, robot: str, night: str, last: str) -> Outcome:
+        """Of a robot that had its last log in an earlier night."""
+        row = dict.fromkeys(("model", "refused", "mismatch", "trusted", "remarks"))
+        why = f"{robot}: no log of {night}; the last one is of {last}"
+        told = {**row, "failure": why}
+        return cls(robot, night, False, told, None, None, {}, {}, {}, has_log=False)
 
     @property
     def reason(self) -> str | None:
@@ -94,6 +104,18 @@ class Fleet:
     verdicts: dict[str, Verdicts] = field(default_factory=dict)
     """By night."""
 
+    def standing(self) -> dict[str, Outcome]:
+        """Alarms that stand, by robot: those of the newest night, and earlier ones of robots that
+        have no answer since.
+        """
+        found: dict[str, Outcome] = {}
+        for one in self.outcomes:
+            if one.is_alarm:
+                found[one.robot] = one
+            elif one.values:
+                found.pop(one.robot, None)
+        return found
+
 
 def run(
     place: str,
@@ -109,6 +131,7 @@ def run(
     """
     options = options or Options()
     root, all_logs = read_fleet(place)
+    logged: dict[str, str] = {}
     robots = sorted({one.robot for one in all_logs})
     models = read_models(model_by, robots)
     nights = sorted({one.night for one in all_logs})
@@ -122,7 +145,14 @@ def run(
             if since == night:
                 fleet.histories[robot] = History(groups[robot])
                 fleet.models[robot] = models[robot]
-        _night(fleet, night, list(logs), Stage(Path(out), runner, options, root, progress))
+        own = list(logs)
+        _night(fleet, night, own, Stage(Path(out), runner, options, root, progress))
+        logged |= {one.robot: night for one in own}
+        fleet.outcomes += [
+            Outcome.without_log(robot, night, last)
+            for robot, last in sorted(logged.items())
+            if last != night
+        ]
     return fleet
 
 

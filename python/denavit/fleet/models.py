@@ -16,16 +16,19 @@ SHAPE = '{"arm-*": "arm.json", "*": "puma560"}'
 
 
 def read_models(path: str | Path, robots: Iterable[str]) -> dict[str, str]:
-    """The text of the model of each robot. The file is a model, which all robots have, or an object
-    of patterns of robots and models: files beside it, or shipped names. The first pattern that fits
-    counts.
+    """The text of the model of each robot. The file is a model, which all robots have (or the name
+    of a shipped one), or an object of patterns of robots and models: files beside it, or shipped
+    names. The first pattern that fits counts.
     """
+    if str(path) in shipped_models() and not Path(path).exists():
+        return dict.fromkeys(robots, json.dumps(load(path).to_dict()))
     path = Path(path)
     try:
         given = json.loads(path.read_bytes())
     except OSError as error:
         cause = f"cannot be read: {error.strerror}"
-        raise FleetError([fault(str(path), cause, "check the path")]) from None
+        hint = "a model, a shipped model's name, or JSON of patterns of robots and models"
+        raise FleetError([fault(str(path), cause, hint)]) from None
     except ValueError:
         # a URDF or an MJCF
         given = {"format": "description"}

@@ -64,15 +64,11 @@ def page(fleet: Fleet, drifts: Sequence[Drift]) -> str:
     """The page. Reports of robots lie beside it."""
     robots = _robots(fleet, drifts)
     last = fleet.nights[-1]
-    alarmed = [one for one in robots if one.last.is_alarm and one.last.night == last]
-    silent = [one for one in robots if one.last.reason]
     style = base64.b64encode(hashlib.sha256(STYLE.encode()).digest()).decode()
     allowed = f"default-src 'none'; style-src 'sha256-{style}'"
-    kind = "verdict bad" if alarmed else "verdict"
+    kind = "verdict bad" if any(one.standing or one.last.reason for one in robots) else "verdict"
     among = _count(len(robots), "robot")
-    said = f"{escape(last)}: {_count(len(alarmed), 'alarm')} among {among}"
-    if silent:
-        said += f"; {len(silent)} {'has' if len(silent) == 1 else 'have'} no answer"
+    said = f"{escape(last)}: {_said(robots, among)}"
     shown = robots[:MOST_WITH_CURVES]
     more = len(robots) - len(shown)
     rest = f"<p>{_count(more, 'more robot')} {'is' if more == 1 else 'are'} in the table below.</p>"
@@ -98,25 +94,54 @@ Red is changed. Values are in SI units; a residual is the logarithm of its share
 """
 
 
+def _said(robots: Sequence[_Robot], among: str) -> str:
+    """The newest night in a sentence."""
+    alarmed = sum(one.last.is_alarm for one in robots)
+    said = [f"{_count(alarmed, 'alarm')} among {among}"]
+    for count, what in (
+        (sum(one.last.has_log and bool(one.last.reason) for one in robots), "no answer"),
+        (sum(not one.last.has_log for one in robots), "no log"),
+        (sum(one.standing is not None for one in robots) - alarmed,
+         "an alarm from before, and no answer since"),
+    ):  # fmt: skip
+        if count:
+            said.append(f"{count} {'has' if count == 1 else 'have'} {what}")
+    return "; ".join(said)
+
+
 class _Robot:
     """A robot with its nights and drifts."""
 
-    def __init__(self, name: str, outcomes: list[Outcome], drifts: list[Drift]) -> None:
+    def __init__(
+        self,
+        name: str,
+        outcomes: list[Outcome],
+        drifts: list[Drift],
+        standing: Outcome | None,
+    ) -> None:
         self.name, self.outcomes, self.drifts = name, outcomes, drifts
-        self.last = outcomes[-1]
+        self.last, self.standing = outcomes[-1], standing
         self.has_drift = any(one.is_change for one in drifts)
 
     @property
+    def shown(self) -> Outcome:
+        """What is told of: the alarm that stands, or the last night."""
+        return self.standing or self.last
+
+    @property
     def p(self) -> float:
-        return 1.0 if self.last.judged is None else self.last.judged.p
+        return 1.0 if self.shown.judged is None else self.shown.judged.p
 
     @property
     def state(self) -> tuple[int, str, str]:
         """Rank, kind and words: the worst is first."""
+        silent = "no answer" if self.last.has_log else "no log"
         if self.last.is_alarm:
             return 0, "bad", "alarm"
+        if self.standing is not None:
+            return 0, "bad", f"alarm of {self.standing.night}, {silent} since"
         if self.last.reason:
-            return 1, "fair", "no answer"
+            return 1, "fair", silent
         if any(one.is_alarm for one in self.outcomes):
             return 2, "fair", "alarm of an earlier night"
         if self.has_drift:
@@ -131,7 +156,10 @@ def _robots(fleet: Fleet, drifts: Sequence[Drift]) -> list[_Robot]:
     nights: dict[str, list[Outcome]] = {robot: [] for robot in fleet.robots}
     for outcome in fleet.outcomes:
         nights[outcome.robot].append(outcome)
-    robots = [_Robot(name, nights[name], own.get(name, [])) for name in fleet.robots]
+    standing = fleet.standing()
+    robots = [
+        _Robot(name, nights[name], own.get(name, []), standing.get(name)) for name in fleet.robots
+    ]
     return sorted(robots, key=lambda one: (one.state[0], one.p, one.name))
 
 
@@ -139,12 +167,10 @@ def _nights(fleet: Fleet) -> str:
     rows = []
     for night in fleet.nights:
         own = [one for one in fleet.outcomes if one.night == night]
-        alarms, silent = (
-            sum(each) for each in zip(*((one.is_alarm, bool(one.reason)) for one in own))
-        )
-        first = sum(one.is_first for one in own)
-        rows.append([night, str(len(own)), str(first), str(alarms), str(silent)])
-    numbers = ("robots", "without a history", "alarms", "no answer")
+        told = ((one.has_log, one.is_first, one.is_alarm, one.has_log and bool(one.reason),
+                 not one.has_log) for one in own)  # fmt: skip
+        rows.append([night, *(str(sum(each)) for each in zip(*told))])
+    numbers = ("robots", "without a history", "alarms", "no answer", "no log")
     return _table(["night", *numbers], rows, numbers)
 
 
@@ -168,7 +194,7 @@ def _section(robot: _Robot, fleet: Fleet) -> str:
     _, kind, words = robot.state
     said = "".join(f"<p>{line}</p>" for line in _lines(robot, fleet))
     return (
-        f'<section><h3>{escape(robot.name)}<span class="badge {kind}">{words}</span></h3>'
+        f'<section><h3>{escape(robot.name)}<span class="badge {kind}">{escape(words)}</span></h3>'
         f'{said}<div class="curves">{_curves(robot, fleet)}</div></section>'
     )
 
@@ -176,7 +202,7 @@ def _section(robot: _Robot, fleet: Fleet) -> str:
 def _lines(robot: _Robot, fleet: Fleet) -> list[str]:
     """Sentences on a robot, as HTML."""
     lines = []
-    last, first_alarm = robot.last, next((one for one in robot.outcomes if one.is_alarm), None)
+    last, first_alarm = robot.shown, next((one for one in robot.outcomes if one.is_alarm), None)
     if first_alarm is not None:
         lines.append(f"Alarm since {escape(first_alarm.night)}.")
     if last.is_alarm and last.diagnosed and last.diagnosed["named"]:
@@ -194,8 +220,8 @@ def _lines(robot: _Robot, fleet: Fleet) -> list[str]:
         before, after, floor = (100 * last.diagnosed[key] for key in ("before", "after", "floor"))
         named = f"{before:.2f} %, {after:.2f} % with what is named"
         lines.append(f"Torque mismatch {named}, {floor:.2f} % of noise.")
-    if last.reason:
-        lines.append(f"{escape(last.night)}: {escape(last.reason)}")
+    if robot.last.reason:
+        lines.append(f"{escape(robot.last.night)}: {escape(robot.last.reason)}")
     steps = [one for one in robot.drifts if one.is_change and one.since is not None]
     if steps:
         told = (f"{escape(one.name)} since {escape(fleet.nights[one.since or 0])}" for one in steps)
@@ -240,16 +266,17 @@ def _figure(
 def _list(robots: Sequence[_Robot]) -> str:
     rows = []
     for one in robots:
-        found, judged = one.last.diagnosed or {}, one.last.judged
+        found, judged = one.shown.diagnosed or {}, one.shown.judged
+        nights = [each.night for each in one.outcomes if each.has_log]
         rows.append([
-            one.name, one.state[2], one.last.night,
+            one.name, one.state[2], nights[-1],
             "" if judged is None else f"{judged.p:.2g}",
             "" if judged is None else f"{judged.adjusted:.2g}",
             VERDICTS.get(found.get("verdict") or "", ""), _words(found.get("effect") or ""),
             found.get("joint") or "",
         ])  # fmt: skip
     numbers = ("p", "false discovery rate")
-    head = ["robot", "state", "last night", *numbers, "diagnosis", "effect", "at"]
+    head = ["robot", "state", "last log", *numbers, "diagnosis", "effect", "at"]
     return _table(head, rows, numbers)
 
 

@@ -12,12 +12,13 @@ from functools import lru_cache
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-import numpy as np
-
 from .. import _logs
-from .._arrays import Array
+from .._arrow import arrow, columns, header_of, read_table
 from ..errors import Error, Fault
-from ..studies.parts import arrow
+from ..studies.cases import PassingError
+
+BLOCK = 1 << 22
+"""Bytes that are read at once."""
 
 KINDS = (".csv", ".parquet", ".mcap")
 """Endings of logs in a folder."""
@@ -28,6 +29,10 @@ ReadLog = str | _logs.Table
 
 class FleetError(Error):
     """What was given as a fleet is none."""
+
+
+class UnreadError(FleetError, PassingError):
+    """A log cannot be read now: the network, or a disk. The next run reads it again."""
 
 
 def fault(place: str, cause: str, hint: str | None = None) -> Fault:
@@ -63,6 +68,8 @@ def opened(place: str) -> tuple[Any, str]:
         except (arrow().ArrowException, ValueError) as error:
             hint = "s3://bucket/folder?region=.., or a path"
             raise FleetError([fault(place, f"is no place of logs: {error}", hint)]) from None
+        except OSError as error:
+            raise unread(place, error) from None
         return system, path
     return fs.LocalFileSystem(), str(Path(place).resolve())
 
@@ -101,8 +108,12 @@ def read_fleet(place: str) -> tuple[str, list[RobotNight]]:
 
 def _of_folder(system: Any, place: str, path: str) -> list[RobotNight]:
     selector = _fs().FileSelector(path, recursive=True)
+    try:
+        all_files = system.get_file_info(selector)
+    except (arrow().ArrowException, OSError) as error:
+        raise FleetError([fault(place, f"cannot be read: {error}", "check the place")]) from None
     nights: dict[tuple[str, str], list[File]] = {}
-    for info in system.get_file_info(selector):
+    for info in all_files:
         name = PurePosixPath(info.path).relative_to(path)
         is_log = info.type == _fs().FileType.File and name.suffix.lower() in KINDS
         if is_log and len(name.parts) in (2, 3):
@@ -161,7 +172,10 @@ def _names(cell: object) -> list[str]:
 
 def _listed(system: Any, root: PurePosixPath, name: str) -> File:
     """A log of a manifest. One that is not there is a row that says so, later."""
-    info = system.get_file_info(str(root / name))
+    try:
+        info = system.get_file_info(str(root / name))
+    except (arrow().ArrowException, OSError) as error:
+        raise FleetError([fault(name, f"cannot be read: {error}", "check the place")]) from None
     return File(name, int(info.size or 0), int(info.mtime_ns or 0))
 
 
@@ -227,40 +241,51 @@ def _opened(root: str) -> tuple[Any, str]:
     return opened(root)
 
 
+def unread(name: str, error: Exception, base: str = "") -> UnreadError:
+    """The exception of what cannot be read now, whatever it holds."""
+    cause = str(error).replace(base.rstrip("/") + "/", "") if base else str(error)
+    return UnreadError([fault(name, f"cannot be read: {cause}", "the next run reads it again")])
+
+
 def _fetched(system: Any, base: str, name: str, inside: Path) -> ReadLog:
     pa = arrow()
     path = str(PurePosixPath(base) / name)
-    is_local, is_parquet = isinstance(system, _fs().LocalFileSystem), name.endswith(".parquet")
+    is_local, is_parquet = isinstance(system, _fs().LocalFileSystem), _is_parquet(name)
+    if not is_local and (PurePosixPath(name).is_absolute() or ".." in PurePosixPath(name).parts):
+        # its copy must not leave the folder
+        raise FleetError([fault(name, "leads out of the place of the logs")])
     try:
-        if is_parquet:
-            with system.open_input_file(path) as file:
-                table = pa.parquet.read_table(file)
-                return _logs.Table(name, _logs.header_of(table.schema), columns(table))
-        if is_local:
+        content = _content(system, path, keeps=is_parquet or not is_local)
+        if is_local and not is_parquet:
             return path
-        if PurePosixPath(name).is_absolute() or ".." in PurePosixPath(name).parts:
-            # its copy must not leave the folder
-            raise FleetError([fault(name, "leads out of the place of the logs")])
         copy = inside / name
-        copy.parent.mkdir(parents=True, exist_ok=True)
-        with system.open_input_file(path) as file:
-            copy.write_bytes(file.read())
-        return str(copy)
+        if not is_parquet:
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            copy.write_bytes(content)
+            return str(copy)
+    except (pa.ArrowException, OSError) as error:
+        raise unread(name, error, base) from None
+    try:
+        table = read_table(pa.BufferReader(content), is_parquet=True)
+        return _logs.Table(name, header_of(table.schema), columns(table))
     except (pa.ArrowException, OSError, ValueError) as error:
-        cause = str(error).replace(base.rstrip("/") + "/", "")
-        raise FleetError([fault(name, f"cannot be read: {cause}")]) from None
+        raise FleetError([fault(name, f"cannot be read: {error}")]) from None
 
 
-def columns(table: Any) -> dict[str, Array]:
-    """The columns of numbers of a table; times of a clock are seconds since the first one."""
-    types, found = arrow().types, {}
-    for name, column in zip(table.column_names, table.columns):
-        if types.is_floating(column.type) or types.is_integer(column.type):
-            found[name.strip()] = column.to_numpy().astype(np.float64)
-        elif types.is_timestamp(column.type) and len(column) and not column.null_count:
-            nanoseconds = column.cast("timestamp[ns]").cast("int64").to_numpy()
-            found[name.strip()] = (nanoseconds - nanoseconds[0]) / 1e9
-    return found
+def _is_parquet(name: str) -> bool:
+    return name.lower().endswith(".parquet")
+
+
+def _content(system: Any, path: str, *, keeps: bool) -> bytes:
+    """Reads a log from end to end, so that a store that fails is told from a log that is corrupt.
+    What is not kept is read again from the file, which the machine remembers.
+    """
+    kept = []
+    with system.open_input_stream(path, compression=None) as file:
+        while block := file.read(BLOCK):
+            if keeps:
+                kept.append(block)
+    return b"".join(kept)
 
 
 def _cut(logs: list[ReadLog], name: str) -> list[list[ReadLog]]:
@@ -285,10 +310,14 @@ def _read_csv(path: str, name: str) -> _logs.Table:
     import pyarrow.csv
 
     try:
-        lines = Path(path).read_bytes().splitlines(keepends=True)
+        content = Path(path).read_bytes()
+    except OSError as error:
+        raise unread(name, error) from None
+    try:
+        lines = content.splitlines(keepends=True)
         text = b"".join(line for line in lines if not line.startswith(b"#"))
         said = [line[1:].decode().partition(":") for line in lines if line.startswith(b"#")]
         header = [(key.strip(), value.strip()) for key, _, value in said]
         return _logs.Table(name, header, columns(pyarrow.csv.read_csv(io.BytesIO(text))))
-    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
+    except (pa.ArrowException, UnicodeDecodeError) as error:
         raise FleetError([fault(name, f"cannot be read: {error}")]) from None

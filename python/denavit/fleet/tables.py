@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from ..studies.parts import arrow, write_table
+from .._arrow import arrow
+from ..studies.parts import write_table
 from .changes import of_robot
 from .drift import Drift, changed, drift
 from .engine import Fleet, Outcome
@@ -70,7 +71,8 @@ def _row(one: Outcome) -> dict[str, Any]:
     }
     told = {name: found.get(name) for name in LEFT}
     if told["verdict"] is None:
-        told["verdict"] = "no_answer" if one.reason else "not_diagnosed"
+        silent = "no_answer" if one.has_log else "no_log"
+        told["verdict"] = silent if one.reason else "not_diagnosed"
     return row | told
 
 

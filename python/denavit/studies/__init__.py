@@ -13,16 +13,18 @@ pyarrow; ``on_ray`` needs ray.
 """
 
 from . import ready
-from .cases import Case, Row, rows
+from .cases import Case, PassingError, Row, rows
 from .here import computed, run
-from .parts import StudyError, extent, merge, missing, read_part
+from .parts import StudyError, again, extent, merge, missing, read_part
 from .study import Study, read_study
 
 __all__ = [
     "Case",
+    "PassingError",
     "Row",
     "Study",
     "StudyError",
+    "again",
     "computed",
     "extent",
     "merge",

@@ -9,6 +9,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from ..errors import Error
+
 Row = Mapping[str, Any]
 """The values of one index by column; None where there is none."""
 
@@ -25,6 +27,15 @@ COLUMN_TYPES: dict[Any, str] = {
 }
 """Types of columns, and what Arrow calls them."""
 
+AGAIN = "again"
+"""What a row has that has no answer for now: it is computed again when its part is run again."""
+
+
+class PassingError(Error):
+    """What a row depends on cannot be read now: the network, or a disk. A function raises it where
+    its row is to be computed again, at the next run.
+    """
+
 
 @dataclass(frozen=True)
 class Case:
@@ -36,6 +47,8 @@ class Case:
     inputs: Mapping[str, bytes] = field(repr=False)
     """The content of the study's files."""
     options: Mapping[str, Any] = field(repr=False)
+    files: Mapping[str, str] = field(default_factory=dict, repr=False)
+    """Paths of what is too large to be carried."""
 
     def random(self) -> np.random.Generator:
         """Random numbers of this index: the same ones wherever and whenever it is computed."""
@@ -49,7 +62,7 @@ def rows(**columns: Any) -> Callable[[F], F]:
     unknown = [name for name, kind in columns.items() if kind not in COLUMN_TYPES]
     if unknown:
         raise TypeError(f"columns of a type that no row has: {', '.join(unknown)}")
-    taken = {"index", "failure"} & columns.keys()
+    taken = {"index", "failure", AGAIN} & columns.keys()
     if taken:
         raise TypeError(f"every row has a column of that name: {', '.join(sorted(taken))}")
 

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
+import signal
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Protocol
 
+from .._options import place
+from ..errors import Fault, _argument
 from .cases import Row
-from .parts import Part, journal, noted
+from .parts import Part, StudyError, journal, noted, wrong
 from .study import Study
 
 Progress = Callable[[int, int], object]
@@ -30,12 +36,23 @@ def in_process(study: Study, indices: Iterable[int]) -> Iterator[Row]:
 def in_processes(workers: int) -> Runner:
     """Computes rows in processes of this machine."""
 
+    if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
+        raise _argument(f"`workers` is {workers!r}", "a number of processes, 1 or more")
+
     def computed(study: Study, indices: Iterable[int]) -> Iterator[Row]:
+        # named here, so that workers are held to it
+        assert study.key
         # a fresh interpreter: threads of this one do not outlive a fork
         context = multiprocessing.get_context("spawn")
         pool = ProcessPoolExecutor(workers, context, initializer=_take, initargs=(study,))
-        with pool:
+        try:
             yield from windowed(indices, 2 * workers, lambda index: pool.submit(_row, index))
+        except BrokenProcessPool:
+            hint = "perhaps memory ran out. The same call goes on with the rows that are kept"
+            fault = Fault(study.name, None, None, "a worker was killed", hint)
+            raise StudyError([fault]) from None
+        finally:
+            pool.shutdown(cancel_futures=True)
 
     return computed
 
@@ -60,6 +77,17 @@ _STUDY: list[Study] = []
 
 def _take(study: Study) -> None:
     _STUDY[:] = [study]
+    # where someone presses Ctrl-C, the process that waits for this one says what there is to say
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """Ends this process as soon as the one that started it is gone, killed perhaps."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 def _row(index: int) -> Row:
@@ -80,16 +108,23 @@ def run(
     progress: Progress | None = None,
 ) -> int:
     """Computes the rows of a range of indices (all without one) and writes them to ``out`` as
-    Parquet. What an earlier run has left of them is not computed again. Answers how many rows were.
+    Parquet. What an earlier run has left of them is not computed again, but for rows that could not
+    be read then. Answers how many rows were computed.
     """
     chosen = range(study.count) if indices is None else indices
     if chosen.step != 1 or chosen.start < 0 or chosen.stop > study.count:
         raise ValueError(f"indices of this study are a range from 0 to {study.count}")
-    part = Part(study, chosen.start, chosen.stop, Path(out))
-    part.path.parent.mkdir(parents=True, exist_ok=True)
+    part = Part(study, chosen.start, chosen.stop, Path(place(out, "`out`")))
+    try:
+        part.path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        cause = f"its folder cannot be made: {error.strerror}"
+        raise wrong(part.path, cause, "name a file in a folder that can be written to") from None
     if part.is_whole():
         return 0
-    with journal(part) as (done, file):
+    earlier = part.kept()
+    with journal(part) as (of_journal, file):
+        done = {**earlier, **of_journal}
         left = [index for index in chosen if index not in done]
         for row in runner(study, left):
             noted(file, row)

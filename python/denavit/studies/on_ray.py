@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from ..errors import Fault, MissingPackage
+from ..errors import Error, Fault, MissingPackage
 from .cases import Row
 from .here import Runner
 from .study import Study
@@ -28,12 +28,24 @@ def connected(address: str | None = None) -> Iterator[None]:
     ray = ray_package()
     is_ours = not ray.is_initialized()
     if is_ours:
-        ray.init(address=address, include_dashboard=False, log_to_driver=False)
+        try:
+            ray.init(address=address, include_dashboard=False, log_to_driver=False)
+        except (ConnectionError, RuntimeError, ValueError) as error:
+            raise _unreachable(address, error) from None
     try:
         yield
     finally:
         if is_ours:
             ray.shutdown()
+
+
+def _unreachable(address: str | None, error: Exception) -> Error:
+    first = (str(error).strip().splitlines() or [type(error).__name__])[0]
+    cause = f"no cluster of Ray answers: {first}"
+    hint = "`ray start --head` starts one and says its address; `auto` finds it on its own machine"
+    if address is None:
+        cause, hint = f"Ray does not start here: {first}", "`ray stop` ends what is left of another"
+    return Error([Fault(address, None, None, cause, hint)])
 
 
 def on_ray(address: str | None = None, *, tasks_a_core: int = 2) -> Runner:
@@ -52,6 +64,8 @@ def on_ray(address: str | None = None, *, tasks_a_core: int = 2) -> Runner:
 def _rows(ray: Any, study: Study, indices: Iterable[int], tasks_a_core: int) -> Iterator[Row]:
     # a row depends on its index alone: it may be computed again, as often as workers die
     task = ray.remote(num_cpus=1, max_retries=-1)(_row)
+    # named here, so that workers are held to it
+    assert study.key
     shared = ray.put(study)
     most = max(1, int(ray.cluster_resources().get("CPU", 1)) * tasks_a_core)
     under_way: list[Any] = []
@@ -59,10 +73,25 @@ def _rows(ray: Any, study: Study, indices: Iterable[int], tasks_a_core: int) -> 
         under_way.append(task.remote(shared, index))
         if len(under_way) >= most:
             done, under_way = ray.wait(under_way)
-            yield from ray.get(done)
+            yield from _got(ray, study, done)
     while under_way:
         done, under_way = ray.wait(under_way)
-        yield from ray.get(done)
+        yield from _got(ray, study, done)
+
+
+def _got(ray: Any, study: Study, done: list[Any]) -> list[Row]:
+    """Rows that are done. What denavit raised in a worker is raised here, as it was."""
+    try:
+        rows: list[Row] = ray.get(done)
+    except ray.exceptions.RayTaskError as error:
+        if isinstance(error.cause, Error):
+            raise error.cause from None
+        if isinstance(error.cause, ImportError):
+            cause = f"a node cannot import {study.place}: {error.cause}"
+            hint = "its module has to be on PYTHONPATH of every node before `ray start`"
+            raise Error([Fault(study.name, None, None, cause, hint)]) from None
+        raise
+    return rows
 
 
 def _row(study: Study, index: int) -> Row:

@@ -2,7 +2,8 @@
 
 While a part is computed its rows stand in a journal beside it, a line each. A process that is
 killed loses the row that it was at, and no other: the journal is read again, and its last line
-counts only if it is whole.
+counts only if it is whole. A row that cannot be read now (:class:`.cases.PassingError`) is in no
+journal; a file that has such a row says so, and is run again.
 """
 
 from __future__ import annotations
@@ -14,10 +15,11 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
-from ..errors import Error, Fault, MissingPackage
-from .cases import COLUMN_TYPES, Row, columns_of
+from .._arrow import arrow
+from ..errors import Error, Fault
+from .cases import AGAIN, COLUMN_TYPES, Row, columns_of
 from .study import Study
 
 if TYPE_CHECKING:
@@ -36,17 +38,6 @@ def wrong(file: str | Path, cause: str, hint: str | None = None) -> StudyError:
     return StudyError([Fault(str(file), None, None, cause, hint)])
 
 
-def arrow() -> Any:
-    """The package pyarrow, which is asked for where it is used."""
-    try:
-        import pyarrow  # type: ignore[import-untyped, unused-ignore]
-        import pyarrow.parquet  # type: ignore[import-untyped, unused-ignore]
-    except ImportError:
-        cause, hint = "pyarrow is not installed", "pip install 'denavit[studies]'"
-        raise MissingPackage([Fault(None, None, None, cause, hint)]) from None
-    return pyarrow
-
-
 @dataclass(frozen=True)
 class Part:
     """The rows of a range of indices of a study, in a file."""
@@ -62,14 +53,36 @@ class Part:
         return self.path.with_name(self.path.name + ".rows")
 
     def is_whole(self) -> bool:
-        """Whether the file is there. One of another study or range is an error."""
+        """Whether the file is there, with an answer for each index. One of another study or range
+        is an error.
+        """
+        return self.path.exists() and not self._read_again()
+
+    def kept(self) -> dict[int, Row]:
+        """Rows of a file in which some are to be computed again: the others."""
         if not self.path.exists():
-            return False
-        key, start, stop = _said(self.path)
-        if (key, start, stop) != (self.study.key, self.start, self.stop):
-            hint = "name another file, or remove this one"
-            raise wrong(self.path, "holds another study, or other indices of it", hint)
-        return True
+            return {}
+        again = self._read_again()
+        rows = read_part(self.path).to_pylist()
+        return {row["index"]: row for row in rows if row["index"] not in again}
+
+    def _read_again(self) -> set[int]:
+        """Which rows of the file are to be computed again."""
+        said = _said(self.path)
+        if (said.key, said.start, said.stop) != (self.study.key, self.start, self.stop):
+            raise self.other(self.path, said.content)
+        return said.again
+
+    def other(self, path: Path, content: dict[str, str] | None) -> StudyError:
+        """The exception of a file of another study, or of other indices of it."""
+        own, cause = self.study.content, "holds another study, or other indices of it"
+        if content is not None and content != own:
+            names = sorted(
+                name for name in content.keys() | own.keys() if content.get(name) != own.get(name)
+            )
+            cause = f"holds another study: {' and '.join(names)} changed"
+        hint = "name another file, or remove this one: rows of both are not mixed"
+        return wrong(path, cause, hint)
 
     def write(self, rows: Iterable[Row]) -> None:
         """Writes all rows, and ends the journal."""
@@ -83,7 +96,12 @@ def journal(part: Part) -> Iterator[tuple[dict[int, Row], IO[str]]]:
     holds a journal.
     """
     head = {"study": part.study.key, "start": part.start, "stop": part.stop}
-    with part.journal.open("a+", encoding="utf-8") as file:
+    head["content"] = part.study.content
+    try:
+        opened = part.journal.open("a+", encoding="utf-8")
+    except OSError as error:
+        raise wrong(part.journal, f"cannot be written: {error.strerror}") from None
+    with opened as file:
         _locked(file, part.journal)
         file.seek(0)
         try:
@@ -97,12 +115,13 @@ def journal(part: Part) -> Iterator[tuple[dict[int, Row], IO[str]]]:
         if lines:
             hint = "name another file, or remove this one"
             try:
-                is_own = json.loads(lines[0]) == head
+                first = json.loads(lines[0])
                 read = [json.loads(line) for line in lines[1:]]
             except ValueError as error:
                 raise wrong(part.journal, f"is no journal of rows: {error}", hint) from None
-            if not is_own:
-                raise wrong(part.journal, "holds another study, or other indices of it", hint)
+            if first != head:
+                content = first.get("content") if isinstance(first, dict) else None
+                raise part.other(part.journal, content if isinstance(content, dict) else None)
             if not all(_is_row(row, part) for row in read):
                 raise wrong(part.journal, "has rows that are not of this study", hint)
             done = {row["index"]: row for row in read}
@@ -114,7 +133,11 @@ def journal(part: Part) -> Iterator[tuple[dict[int, Row], IO[str]]]:
 
 
 def noted(file: IO[str], row: Row) -> None:
-    """Writes a row into a journal, so that it outlives this process."""
+    """Writes a row into a journal, so that it outlives this process; one that is to be computed
+    again is not kept.
+    """
+    if row.get(AGAIN):
+        return
     file.write(json.dumps(row) + "\n")
     file.flush()
     os.fsync(file.fileno())
@@ -168,7 +191,9 @@ def write_rows(path: Path, study: Study, start: int, stop: int, rows: list[Row])
     pa = arrow()
     table = pa.Table.from_pylist([dict(row) for row in rows], schema=schema(study))
     said = {"study": study.key, "name": study.name, "start": str(start), "stop": str(stop)}
-    said["count"] = str(study.count)
+    said |= {"count": str(study.count), "content": json.dumps(study.content, sort_keys=True)}
+    if again := [str(row["index"]) for row in rows if row.get(AGAIN)]:
+        said[AGAIN] = ",".join(again)
     write_table(path, table.replace_schema_metadata(said))
 
 
@@ -182,12 +207,30 @@ def write_table(path: Path, table: pa.Table) -> None:
         os.replace(new, path)
 
 
-def _said(path: Path) -> tuple[str, int, int]:
+class Said(NamedTuple):
+    """What a part says of itself."""
+
+    key: str
+    """Of its study."""
+    start: int
+    stop: int
+    again: set[int]
+    """Rows that are to be computed again."""
+    content: dict[str, str] | None
+    """What its study depends on; none in a part of an earlier version."""
+
+
+def _said(path: Path) -> Said:
     """The study of a part, and its indices."""
     pa = arrow()
     try:
         said = pa.parquet.read_schema(path).metadata or {}
-        return said[b"study"].decode(), int(said[b"start"]), int(said[b"stop"])
+        again = said.get(AGAIN.encode(), b"").decode().split(",")
+        unread = {int(index) for index in again if index}
+        content = json.loads(said.get(b"content", b"null"))
+        known = content if isinstance(content, dict) else None
+        key, start, stop = said[b"study"].decode(), int(said[b"start"]), int(said[b"stop"])
+        return Said(key, start, stop, unread, known)
     except (pa.ArrowException, OSError, KeyError, ValueError):
         raise wrong(path, "is no part of a study") from None
 
@@ -196,9 +239,14 @@ def extent(path: str | Path) -> tuple[int, int, int | None]:
     """The first index of a part, the one behind its last, and how many its study has: none where a
     part of an earlier version does not say.
     """
-    _, start, stop = _said(Path(path))
+    _, start, stop, *_ = _said(Path(path))
     count = (arrow().parquet.read_schema(path).metadata or {}).get(b"count", b"").decode()
     return start, stop, int(count) if count.isdigit() else None
+
+
+def again(path: str | Path) -> list[int]:
+    """Indices of a part whose rows could not be read, and are computed again at its next run."""
+    return sorted(_said(Path(path)).again)
 
 
 def read_part(path: str | Path) -> pa.Table:
@@ -213,12 +261,12 @@ def read_part(path: str | Path) -> pa.Table:
 
 
 def missing(paths: Iterable[str | Path], study: Study) -> list[tuple[int, int]]:
-    """Ranges of indices of a study that no part has."""
+    """Ranges of indices of a study that no part has, or only one that is to be run again."""
     said = {Path(path): _said(Path(path)) for path in paths}
-    for path, (key, _, _) in said.items():
-        if key != study.key:
+    for path, one in said.items():
+        if one.key != study.key:
             raise wrong(path, f"is no part of the study `{study.name}` as it is now")
-    ranges = sorted((start, stop) for _, start, stop in said.values())
+    ranges = sorted((one.start, one.stop) for one in said.values() if not one.again)
     found, at, count = [], 0, study.count
     for start, stop in ranges:
         if start > at:
@@ -232,13 +280,18 @@ def merge(paths: Iterable[str | Path], out: str | Path) -> int:
     how many there are.
     """
     pa = arrow()
-    parts = [(*_said(Path(path)), Path(path)) for path in paths]
+    all_said = [(Path(path), _said(Path(path))) for path in paths]
+    parts = [(*one[:3], path) for path, one in all_said]
     if not parts:
         raise wrong(out, "there are no parts to merge")
     key = parts[0][0]
     for other, _, _, path in parts:
         if other != key:
             raise wrong(path, f"is of another study than {parts[0][3]}")
+    for path, one in all_said:
+        if one.again:
+            hint = "run it again: what is read by now is computed"
+            raise wrong(path, f"has {len(one.again)} rows that could not be read", hint)
     if any(path.resolve() == Path(out).resolve() for *_, path in parts):
         raise wrong(out, "is one of the parts", "name another file")
     parts.sort(key=lambda part: part[1:3])

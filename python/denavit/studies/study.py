@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import importlib
 import inspect
 import json
@@ -13,10 +12,14 @@ from pathlib import Path
 from typing import Any
 
 from .._denavit import __version__
-from ..errors import Error, Fault
-from .cases import Case, Function, Row, columns_of, plain
+from ..errors import Error, Fault, _argument
+from .cases import AGAIN, Case, Function, PassingError, Row, columns_of, plain
+from .content import build, digest, digest_of_path
 
 FORMAT = "denavit-study/1"
+
+MOST_NAMED = 64
+"""Inputs that have a name each in messages."""
 
 
 @dataclass(frozen=True)
@@ -32,11 +35,20 @@ class Study:
     """Content of files: workers on other machines have them, too."""
     options: Mapping[str, Any] = field(default_factory=dict)
     """What else rows depend on; what JSON can say."""
+    files: Mapping[str, str] = field(default_factory=dict)
+    """Paths of files and folders that are too large to be carried, as programs are. Workers find
+    them by these paths, with the content that they had when the study was named."""
 
     def __post_init__(self) -> None:
         columns_of(self.function)
         if self.count < 0 or self.seed < 0:
             raise ValueError("count and seed are not below 0")
+        for name, value in self.options.items():
+            try:
+                _text(value)
+            except (TypeError, ValueError) as error:
+                hint = "options are what JSON can say: finite numbers, texts, lists"
+                raise _argument(f"`options[{name!r}]`: {error}", hint) from None
 
     @property
     def place(self) -> str:
@@ -44,52 +56,84 @@ class Study:
         return f"{self.function.__module__}:{self.function.__qualname__}"
 
     @cached_property
-    def key(self) -> str:
-        """Names the study by content: the function (its own text, not that of what it calls),
-        inputs, options, seed and version, but not how many indices there are, so that a study may
-        be extended.
+    def content(self) -> dict[str, str]:
+        """What the rows depend on, by name: the function (its own text, not that of what it calls),
+        inputs, files, options, seed, and the build of this package. How many indices there are is
+        no part of it, so that a study may be extended.
         """
         try:
             text = inspect.getsource(self.function)
         except (OSError, TypeError):
             text = ""  # it was typed in
+        columns = {name: str(kind) for name, kind in columns_of(self.function).items()}
         said = {
-            "text": digest(text.encode()),
-            "format": FORMAT,
-            "function": self.place,
-            "columns": {name: str(kind) for name, kind in columns_of(self.function).items()},
-            "inputs": {name: digest(content) for name, content in self.inputs.items()},
-            "options": dict(self.options),
-            "seed": self.seed,
-            "version": __version__,
+            "the format of studies": FORMAT,
+            f"the function {self.place}": digest(text.encode()),
+            "its columns": _text(columns),
+            "the seed": str(self.seed),
         }
-        return digest(json.dumps(said, sort_keys=True, allow_nan=False).encode())
+        said |= {f"the option `{name}`": _text(one) for name, one in self.options.items()}
+        inputs = {f"the input `{name}`": digest(one) for name, one in self.inputs.items()}
+        if len(inputs) > MOST_NAMED:
+            # of as many as a fleet has robots, one name is enough
+            inputs = {"an input": digest(_text(inputs).encode())}
+        return said | inputs | self._surroundings()
+
+    def _surroundings(self) -> dict[str, str]:
+        """What is not carried to workers, as it is where this is asked."""
+        files = {f"the file `{name}`": digest_of_path(one) for name, one in self.files.items()}
+        return files | {"the build of denavit": f"{__version__} {build()[:16]}"}
+
+    @cached_property
+    def key(self) -> str:
+        """Names the study by its content."""
+        return digest(_text(self.content).encode())
 
     def row(self, index: int) -> Row:
         """The row of an index. Where denavit refuses what the case made, the row says why, in
         ``failure``; any other exception is a fault of the function and is raised.
         """
-        case = Case(index, self.seed, self.inputs, self.options)
+        self._check()
+        case = Case(index, self.seed, self.inputs, self.options, self.files)
         columns = columns_of(self.function)
+        more: dict[str, Any] = {}
         try:
             given, failure = self.function(case), None
+        except PassingError as error:
+            given, failure, more = {}, str(error), {AGAIN: True}
         except Error as error:
             given, failure = {}, str(error)
         unknown = given.keys() - columns.keys()
         if unknown:
             raise TypeError(f"{self.place} has no column {', '.join(sorted(unknown))}")
         values = {name: plain(kind, given.get(name)) for name, kind in columns.items()}
-        return {"index": index, **values, "failure": failure}
+        return {"index": index, **values, "failure": failure, **more}
+
+    def _check(self) -> None:
+        """Sees to it that this process has the build and the files that the study is named by: rows
+        of two builds do not stand side by side.
+        """
+        here = self._surroundings().items()
+        other = [name for name, content in here if self.content[name] != content]
+        if other:
+            cause = f"{' and '.join(other)} changed since the study began, or is another one here"
+            hint = "all machines need the same wheel and files, for as long as the study runs"
+            raise ContentError([Fault(self.name, None, None, cause, hint)])
 
 
-def digest(content: bytes) -> str:
-    """The name of some content."""
-    return hashlib.sha256(content).hexdigest()
+class ContentError(Error):
+    """A worker has another build, or other files, than those the study is named by."""
+
+
+def _text(value: Any) -> str:
+    """A value as text, the same for equal ones."""
+    return json.dumps(value, sort_keys=True, allow_nan=False)
 
 
 def read_study(path: str | Path) -> Study:
     """Reads a study file: JSON with ``format``, ``name``, ``function`` (``module:name``), ``count``
-    and, if they are wanted, ``seed``, ``inputs`` (files by name, beside the study) and ``options``.
+    and, if they are wanted, ``seed``, ``options``, ``inputs`` (files by name, beside the study,
+    which are carried to workers) and ``files`` (the same, but workers find them by their paths).
     """
     path = Path(path)
 
@@ -98,15 +142,15 @@ def read_study(path: str | Path) -> Study:
         return Error([Fault(str(path), line, column, cause, hint)])
 
     try:
-        given = json.loads(path.read_bytes())
+        given = json.loads(path.read_bytes(), parse_constant=_no_number)
     except OSError as error:
         raise wrong(f"cannot be read: {error.strerror}", "check the path") from None
     except json.JSONDecodeError as error:
         raise wrong(f"is no JSON: {error.msg}", at=(error.lineno, error.colno)) from None
     except ValueError as error:
-        raise wrong(f"is no text: {error}") from None
+        raise wrong(f"is no JSON: {error}") from None
     kinds = {"format": str, "name": str, "function": str, "count": int}
-    more = {"seed": int, "inputs": dict, "options": dict}
+    more = {"seed": int, "inputs": dict, "options": dict, "files": dict}
     if not isinstance(given, dict):
         raise wrong("is no object", f'{{"format": "{FORMAT}", "name": .., "function": ..}}')
     faults = [f"no key `{key}`" for key in kinds if key not in given]
@@ -131,8 +175,16 @@ def read_study(path: str | Path) -> Study:
     except (ImportError, AttributeError, ValueError, TypeError) as error:
         hint = "module:name of a function that Python can import, with @denavit.studies.rows above"
         raise wrong(f"`function`: {error}", hint) from None
-    options = given.get("options", {})
-    return Study(given["name"], function, given["count"], given.get("seed", 1), inputs, options)
+    files = {
+        name: str((path.parent / str(file)).resolve())
+        for name, file in given.get("files", {}).items()
+    }
+    seed, options = given.get("seed", 1), given.get("options", {})
+    return Study(given["name"], function, given["count"], seed, inputs, options, files)
+
+
+def _no_number(name: str) -> float:
+    raise ValueError(f"{name} is no number that is finite")
 
 
 def _negative(value: object) -> bool:

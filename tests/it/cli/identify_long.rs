@@ -66,6 +66,44 @@ fn plans_of_others(directory: &Directory, mut claimed: Value) {
 
 /// Three stretches, of which the first is the head's: the closed form's values, and the same bytes
 /// from pieces that were condensed apart.
+/// Pieces of logs of equal length, condensed by the same plan: one that is another log from the
+/// middle of piece 1 on, and one that is another log from its beginning. And numbers of pieces that
+/// were changed.
+fn pieces_of_others(directory: &Directory) {
+    let text = fs::read_to_string(directory.path.join("log.csv")).expect("written");
+    let piece = |from: usize, pieces: &str| {
+        let other = Directory::new(&format!("identify_long_from_{from}"));
+        let mut changed = String::new();
+        for (row, line) in text.lines().enumerate() {
+            let (rest, torque) = line.rsplit_once(',').expect("columns");
+            let other = torque.parse::<f64>().ok().filter(|_| row > from);
+            let torque = other.map_or(torque.to_owned(), |torque| format!("{:.12}", 1.1 * torque));
+            writeln!(changed, "{rest},{torque}").expect("text grows");
+        }
+        fs::write(other.path.join("log.csv"), changed).expect("written");
+        fs::write(other.path.join("pendulum.json"), MODEL).expect("written");
+        let plan = directory.path.join("plan.json");
+        let plan = ["--plan", plan.to_str().expect("text")];
+        let condensed = run(&other, &["long", "condense", "--pieces", pieces], &plan);
+        assert_eq!(condensed.code, Some(0), "{}", condensed.stderr);
+        condensed.stdout
+    };
+    let own = |name: &str| fs::read_to_string(directory.path.join(name)).expect("written");
+    let [ab, c] = ["ab.jsonl", "c.jsonl"].map(own);
+    let more = ["--head", "100000", "--plan", "plan.json", "--rows", "other.jsonl"];
+    for (rows, said) in [
+        (format!("{ab}{}", piece(150_000, "2:3")), "piece 2 was condensed from another log than"),
+        (format!("{}{c}", piece(0, "0:2")), "piece 0 was condensed from another log than the head"),
+        (format!("{ab}{}", c.replacen("e-", "e-2", 1)), "other.jsonl:3: has other numbers"),
+        (format!("{ab}{}", c.replacen("\"samples\":", "\"samples\":1", 1)), "has other numbers"),
+    ] {
+        fs::write(directory.path.join("other.jsonl"), rows).expect("written");
+        let refused = run(directory, &["long", "estimate"], &more);
+        let is_told = refused.code == Some(2) && refused.stderr.contains(said);
+        assert!(is_told, "{said}: {}{}", refused.stdout, refused.stderr);
+    }
+}
+
 #[test]
 fn pieces_give_the_values_of_the_closed_form_and_the_bytes_of_one_process() {
     let directory = Directory::new("identify_long");
@@ -113,6 +151,7 @@ fn pieces_give_the_values_of_the_closed_form_and_the_bytes_of_one_process() {
     fs::write(directory.path.join("cut.jsonl"), &rows[..rows.len() / 2]).expect("written");
     let cut = estimate(&["cut.jsonl"]);
     assert!(cut.code == code && cut.stderr.contains("cut.jsonl:"), "{}", cut.stderr);
+    pieces_of_others(&directory);
     plans_of_others(&directory, plan);
     // a plan for other rows
     let mut words = vec!["long", "condense", "--pieces", "0:1", "--skip-slow", "off"];

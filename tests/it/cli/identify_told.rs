@@ -244,6 +244,15 @@ fn one_measurement_counts_once_and_instruments_are_of_the_motion() {
     assert!(text.contains("says the same as whole.csv"), "{text}");
     let (code, text) = said(&directory, &["--train", "whole.csv", "again.csv"]);
     assert_eq!(code, Some(0), "{text}");
+    // a log that judges begins before the other one ends
+    let (cut, before) = (rows.len() * 6 / 10, rows.len() / 2);
+    for (name, part) in [("first", &rows[..cut]), ("late", &rows[cut..]), ("tail", &rows[before..])] {
+        write_log(&directory, &format!("{name}.csv"), part);
+    }
+    for (judge, is_told) in [("late.csv", false), ("tail.csv", true)] {
+        let (_, text) = said(&directory, &["--train", "first.csv", "--validate", judge]);
+        assert_eq!(text.contains("tail.csv: says the same as first.csv"), is_told, "{text}");
+    }
     for (instruments, expected) in [("again.csv", 0), ("other.csv", 2), ("whole.csv", 2)] {
         let words = ["--train", "whole.csv", "--method", "iv", "--instruments", instruments];
         let (code, text) = said(&directory, &words);

@@ -455,7 +455,7 @@ impl fmt::Display for LogRemark {
                 write!(f, "{laps} laps of {period_s:.6} s are replaced by their mean")
             }
             Self::SameAs { other } => {
-                write!(f, "says the same as {other}: it validates nothing")
+                write!(f, "says the same as {other}, all of it or a part: it validates nothing")
             }
             Self::Accepted(suspicion) => {
                 let text = suspicion.to_string();

@@ -101,7 +101,7 @@ impl Read {
         self.validate = reader.kept(&logs.held_out, halvings, longest_s)?;
         self.motions = reader.motions.take().unwrap_or_default();
         for log in &self.validate {
-            if let Some(same) = self.train.iter().find(|other| other.overlaps(log)) {
+            if let Some(same) = self.train.iter().find(|other| other.shares_a_part(log)) {
                 let remark = LogRemark::SameAs { other: same.file.clone() };
                 reader.remarks.push((log.file.clone(), remark));
             }

@@ -91,7 +91,7 @@ pub fn identify_two_stage(
         let new = named(&log).into_iter().filter(|one| !remarks.contains(one));
         remarks.extend(new.collect::<Vec<String>>());
         let loads = conditioned(plant, &log, &stages.springs, &conditions(&log))?;
-        if own.overlaps(&loads) {
+        if own.shares_a_part(&loads) {
             is_searched_again = true;
             let same = LogRemark::SameAs { other: own.file.clone() };
             remarks.push(format!("{}: {same}", log.file));

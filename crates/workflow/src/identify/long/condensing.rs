@@ -2,8 +2,9 @@
 
 use super::super::Work;
 use super::super::logs::Reader;
+use super::reading::{OfRobot, Window};
 use super::{LongLog, LongPlan, PieceRows};
-use crate::error::Error;
+use crate::error::{Cause, Error};
 use crate::logs::{LogSource, Logs};
 use crate::observer::{Reading, Stage, Watched};
 use denavit_identify::estimate::Options;
@@ -54,6 +55,7 @@ pub(super) struct Condenser<'a> {
     options: Options,
     work: Work<'a>,
     logs: Logs,
+    of_robot: OfRobot<'a>,
     /// The logs for validation, behind the filter of the stretches.
     judges: Vec<Conditioned>,
 }
@@ -77,12 +79,42 @@ impl<'a> Condenser<'a> {
         logs.accepts_suspicious = true;
         let cut = plan.cut().map_err(|why| long.wrong(why))?;
         let options = long.options.estimate(model, plan.position_noise.clone())?;
-        Ok(Self { plan, cut, options, work, logs, judges })
+        let of_robot = long.robot(model);
+        Ok(Self { plan, cut, options, work, logs, of_robot, judges })
     }
 
     /// The rows of the log that a stretch is read with.
     pub(super) fn read(&self, stretch: usize) -> Range<usize> {
         self.cut.get(stretch).read
+    }
+
+    /// Sees to it that a stretch is of the log that its piece is of.
+    fn join(
+        &self,
+        piece: &mut PieceRows,
+        stretch: usize,
+        source: &LogSource,
+    ) -> Result<(), Error> {
+        let from = self.cut.get(stretch).read.start;
+        let logs = Logs { train: vec![source.clone()], ..self.logs.clone() };
+        let mut window = Window::open(&logs, &self.of_robot)?;
+        let mut named = |seam: usize| -> Result<Option<String>, Error> {
+            let rows = self.plan.seam(seam);
+            rows.map(|rows| window.name_of(rows.start - from..rows.end - from)).transpose()
+        };
+        let [begins, ends] = [named(stretch)?, named(stretch + 1)?];
+        if piece.stretches.start == stretch {
+            piece.seams[0] = begins;
+        } else if piece.seams[1] != begins {
+            let why = format!(
+                "stretch {stretch} is of another log than the one before it\n  hint: condense \
+                 piece {} again, from one log",
+                piece.piece
+            );
+            return Err(Cause::Long(source.to_string(), why).into());
+        }
+        piece.seams[1] = ends;
+        Ok(())
     }
 
     /// Adds the rows of a stretch, which is the log, to those of its piece; none where nothing
@@ -94,14 +126,15 @@ impl<'a> Condenser<'a> {
         source: &LogSource,
         watched: &mut Watched<'_>,
     ) -> Result<(), Error> {
-        let Self { plan, cut, options, work, logs, judges } = self;
+        let Self { plan, cut, options, work, logs, judges, .. } = self;
+        self.join(piece, stretch, source)?;
         let mut reading = Reading::needed(watched, Stage::Condensing, 1);
         let mut reader = Reader::new(Work { logs, ..*work }, &mut reading)?;
         let clock = plan.clock(work.logs.accepts_suspicious);
         let Some(log) = reader.stretch(source, &cut.get(stretch), clock, &plan.how)? else {
             return Ok(());
         };
-        for judge in judges.iter().filter(|judge| log.overlaps(judge)) {
+        for judge in judges.iter().filter(|judge| log.shares_a_part(judge)) {
             note(&mut piece.same, (judge.file.clone(), source.to_string()));
         }
         let whole = WholeLog {

@@ -158,13 +158,27 @@ impl LongLog<'_> {
             let why = "the plan is of another head, or of other options";
             return Err(self.wrong(why));
         }
-        let (mut whole, mut next) = (Whole::default(), 0);
+        let mut of_head = Window::open(&logs, &self.robot(&model))?;
+        let (mut whole, mut next, mut before) = (Whole::default(), 0, None);
         for piece in pieces {
             let piece = piece?;
             if let Some(why) = plan.wrong_piece(&piece, next) {
                 return Err(self.wrong(why));
             }
+            let seam = plan.seam(piece.stretches.start);
+            let in_head = seam.filter(|rows| rows.end <= self.head_rows);
+            let in_head = in_head.map(|rows| of_head.name_of(rows)).transpose()?;
+            let is_of = |name: &Option<String>| name.is_none() || *name == piece.seams[0];
+            if !is_of(&in_head) || next > 0 && before != piece.seams[0] {
+                let other = if is_of(&in_head) { "the piece before it" } else { "the head" };
+                let why = format!(
+                    "piece {next} was condensed from another log than {other}\n  hint: condense \
+                     it again, from this log"
+                );
+                return Err(self.wrong(why));
+            }
             next += 1;
+            before.clone_from(&piece.seams[1]);
             whole.add(piece);
         }
         if next != plan.pieces() {
@@ -294,7 +308,11 @@ impl LongLog<'_> {
     /// What the head says, with where the log is cut.
     fn planned(&self, head: &Head<'_>, survey: Survey) -> Result<LongPlan, Error> {
         if survey.rows <= self.head_rows {
-            let why = format!("{} rows are no more than those of its head", survey.rows);
+            let why = format!(
+                "{} rows are no more than those of its head, {}\n  hint: it needs no pieces; or \
+                 choose a head of fewer rows",
+                survey.rows, self.head_rows
+            );
             return Err(self.wrong(why));
         }
         let plan = LongPlan::new(head, survey);

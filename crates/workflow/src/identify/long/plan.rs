@@ -15,7 +15,10 @@ use serde_json::{Value, json};
 use std::ops::Range;
 
 const PLAN: &str = "denavit-long-plan/1";
-const ROWS: &str = "denavit-long-rows/1";
+const ROWS: &str = "denavit-long-rows/2";
+
+/// Rows at the beginning of a log that its first piece is known by.
+const FIRST_ROWS: usize = 256;
 
 /// Samples of which one is left, at most.
 const MOST_DECIMATED: usize = 100_000;
@@ -51,6 +54,9 @@ pub struct PieceRows {
     pub(super) rows: Option<LongRows>,
     /// Logs for validation, each with a stretch that says the same.
     pub(super) same: Vec<(String, String)>,
+    /// Names rows of the log at its seams: with what is before it, and with what follows, which
+    /// read them, too. None at the end of the log.
+    pub(super) seams: [Option<String>; 2],
 }
 
 /// A plan as its file has it.
@@ -90,7 +96,7 @@ struct WidenedFile {
 }
 
 /// Names bytes. FNV-1a: it tells apart what is mixed up, and keeps nobody out.
-fn name_of(bytes: impl Iterator<Item = u8>) -> String {
+pub(super) fn name_of(bytes: impl Iterator<Item = u8>) -> String {
     let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
     });
@@ -164,6 +170,19 @@ impl LongPlan {
         self.stretches > self.pieces()
     }
 
+    /// Rows that two stretches read, this one and the one before it: pieces of one log have the
+    /// same ones there. The middle of them; of the first stretch those that it begins with. None
+    /// behind the last one, or where no row is read twice.
+    pub(super) fn seam(&self, stretch: usize) -> Option<Range<usize>> {
+        let cut = self.cut().ok().filter(|_| stretch < self.stretches)?;
+        let Range { start, end } = match stretch.checked_sub(1) {
+            None => return Some(0..FIRST_ROWS.min(cut.get(0).read.end)),
+            Some(before) => cut.get(stretch).read.start..cut.get(before).read.end,
+        };
+        let quarter = end.saturating_sub(start) / 4;
+        (start < end).then(|| start + quarter..end - quarter)
+    }
+
     pub(super) fn clock(&self, accepts_suspicious: bool) -> Clock {
         Clock { start_s: self.start_s, step_s: self.step_s, accepts_suspicious }
     }
@@ -217,7 +236,8 @@ impl LongPlan {
 
     /// Rows of a piece that has none yet.
     pub(super) fn piece(&self, piece: usize, stretches: Range<usize>) -> PieceRows {
-        PieceRows { piece, stretches, plan: self.key(), rows: None, same: Vec::new() }
+        let (rows, same, seams) = (None, Vec::new(), [None, None]);
+        PieceRows { piece, stretches, plan: self.key(), rows, same, seams }
     }
 
     /// Why rows are not those that come next; none if they are.
@@ -328,8 +348,14 @@ impl LongPlan {
 }
 
 impl PieceRows {
-    /// As JSON.
+    /// As JSON, with a name of all that it says.
     pub fn to_json(&self) -> Value {
+        let mut said = self.said();
+        said["name"] = name_of(said.to_string().bytes()).into();
+        said
+    }
+
+    fn said(&self) -> Value {
         json!({
             "format": ROWS,
             "plan": self.plan,
@@ -337,6 +363,7 @@ impl PieceRows {
             "stretches": [self.stretches.start, self.stretches.end],
             "rows": self.rows.as_ref().map(LongRows::to_json),
             "same": self.same,
+            "seams": self.seams,
         })
     }
 
@@ -359,6 +386,14 @@ impl PieceRows {
         let plan = value["plan"].as_str().unwrap_or_default().to_owned();
         let same = serde_json::from_value(value["same"].clone());
         let same = same.map_err(|error| format!("`same`: {error}"))?;
-        Ok(Self { piece, stretches: first..end, plan, rows, same })
+        let seams = serde_json::from_value(value["seams"].clone());
+        let seams = seams.map_err(|error| format!("`seams`: {error}"))?;
+        let read = Self { piece, stretches: first..end, plan, rows, same, seams };
+        match value["name"] == name_of(read.said().to_string().bytes()) {
+            true => Ok(read),
+            false => Err("has other numbers than were written: it was changed, or is corrupt\n  \
+                          hint: condense the piece again"
+                .to_owned()),
+        }
     }
 }

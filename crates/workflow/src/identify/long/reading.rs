@@ -1,6 +1,7 @@
 //! Rows of a log's file, some at a time.
 
 use super::LongLog;
+use super::plan::name_of;
 use crate::error::{Cause, Error};
 use crate::logs::Logs;
 use denavit_logs::{Batches, MemoryLog, Table};
@@ -143,6 +144,13 @@ impl<'a> Window<'a> {
         let columns =
             named.map(|(name, values)| (name.clone(), values[from..to].to_vec())).collect();
         Ok(MemoryLog { header: self.header.clone(), columns })
+    }
+
+    /// Names rows by all their numbers, as [`Window::rows`] has them.
+    pub(super) fn name_of(&mut self, rows: Range<usize>) -> Result<String, Error> {
+        let found = self.rows(rows)?;
+        let numbers = found.columns.iter().flat_map(|(_, numbers)| numbers);
+        Ok(name_of(numbers.flat_map(|number| number.to_bits().to_le_bytes())))
     }
 
     fn held(&self) -> usize {

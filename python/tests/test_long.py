@@ -251,7 +251,7 @@ def test_pieces_of_another_log_of_equal_length_are_refused(columns, log, tmp_pat
         return mixed
 
     for pieces, said in (
-        ({1}, "piece 1 was condensed from another log than the piece before it"),
+        ({1}, "piece 1 was condensed from another log than the head"),
         ({2}, "piece 2 was condensed from another log than the piece before it"),
         ({0, 1, 2}, "piece 0 was condensed from another log than the head"),
     ):

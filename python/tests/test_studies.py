@@ -360,26 +360,24 @@ def test_workers_end_with_the_process_that_started_them(study_file, tmp_path):
     command = [sys.executable, "-m", "denavit", "study", "run", str(study_file), "--workers", "2"]
     process = subprocess.Popen([*command, "-o", str(tmp_path / "rows.parquet")])
 
-    def workers():
-        found = []
-        for stat in Path("/proc").glob("[0-9]*/cmdline"):
-            try:
-                text = stat.read_bytes()
-            except OSError:
-                continue
-            if b"spawn_main" in text and f"parent_pid={process.pid}".encode() in text:
-                found.append(stat)
-        return found
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
 
-    until = time.monotonic() + 60
-    while len(workers()) < 2:
+    def is_worker(pid):
+        try:
+            return b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes()
+        except OSError:
+            return False
+
+    until, workers = time.monotonic() + 60, []
+    while len(workers) < 2:
         assert time.monotonic() < until and process.poll() is None
         time.sleep(0.05)
+        workers = [pid for pid in children.read_text().split() if is_worker(pid)]
     time.sleep(1.0)
     process.send_signal(signal.SIGKILL)
     process.wait()
     until = time.monotonic() + 10
-    while workers():
+    while any(is_worker(pid) for pid in workers):
         assert time.monotonic() < until, "workers outlive their driver"
         time.sleep(0.05)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -10,6 +11,10 @@ from ..errors import Error, Fault, MissingPackage
 from .cases import Row
 from .here import Runner
 from .study import Study
+
+
+WAIT_S = 10.0
+"""Seconds in which the head of a cluster answers, at most."""
 
 
 def ray_package() -> Any:
@@ -28,6 +33,7 @@ def connected(address: str | None = None) -> Iterator[None]:
     ray = ray_package()
     is_ours = not ray.is_initialized()
     if is_ours:
+        _reach(address)
         try:
             ray.init(address=address, include_dashboard=False, log_to_driver=False)
         except (ConnectionError, RuntimeError, ValueError) as error:
@@ -37,6 +43,17 @@ def connected(address: str | None = None) -> Iterator[None]:
     finally:
         if is_ours:
             ray.shutdown()
+
+
+def _reach(address: str | None) -> None:
+    """Asks whether anything answers at an address: Ray would wait for it for minutes."""
+    host, colon, port = (address or "").rpartition("://")[2].rpartition(":")
+    if not colon:
+        return  # Ray finds it itself
+    try:
+        socket.create_connection((host.strip("[]"), int(port)), WAIT_S).close()
+    except (OSError, ValueError, OverflowError) as error:
+        raise _unreachable(address, error) from None
 
 
 def _unreachable(address: str | None, error: Exception) -> Error:

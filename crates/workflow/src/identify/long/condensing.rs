@@ -2,7 +2,7 @@
 
 use super::super::Work;
 use super::super::logs::Reader;
-use super::reading::{OfRobot, Window};
+use super::reading::{Held, OfRobot};
 use super::{LongLog, LongPlan, PieceRows};
 use crate::error::{Cause, Error};
 use crate::logs::{LogSource, Logs};
@@ -89,20 +89,15 @@ impl<'a> Condenser<'a> {
     }
 
     /// Sees to it that a stretch is of the log that its piece is of.
-    fn join(
-        &self,
-        piece: &mut PieceRows,
-        stretch: usize,
-        source: &LogSource,
-    ) -> Result<(), Error> {
+    fn join(&self, piece: &mut PieceRows, stretch: usize, source: &LogSource) -> Result<(), Error> {
         let from = self.cut.get(stretch).read.start;
         let logs = Logs { train: vec![source.clone()], ..self.logs.clone() };
-        let mut window = Window::open(&logs, &self.of_robot)?;
-        let mut named = |seam: usize| -> Result<Option<String>, Error> {
-            let rows = self.plan.seam(seam);
-            rows.map(|rows| window.name_of(rows.start - from..rows.end - from)).transpose()
+        let held = Held::read(&logs, &self.of_robot)?;
+        let named = |seam: usize| {
+            let rows = self.plan.seam(seam)?;
+            Some(held.name_of(rows.start - from..rows.end - from))
         };
-        let [begins, ends] = [named(stretch)?, named(stretch + 1)?];
+        let [begins, ends] = [named(stretch), named(stretch + 1)];
         if piece.stretches.start == stretch {
             piece.seams[0] = begins;
         } else if piece.seams[1] != begins {

@@ -22,7 +22,7 @@ use denavit_measure::condition::Averaging;
 use denavit_measure::log::LogRemark;
 use denavit_plants::regression::RegressionModel;
 pub use plan::{LongPlan, PieceRows};
-use reading::{Survey, Window};
+use reading::{Held, Survey, Window};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::sync::Arc;
@@ -158,7 +158,7 @@ impl LongLog<'_> {
             let why = "the plan is of another head, or of other options";
             return Err(self.wrong(why));
         }
-        let mut of_head = Window::open(&logs, &self.robot(&model))?;
+        let of_head = Held::read(&logs, &self.robot(&model))?;
         let (mut whole, mut next, mut before) = (Whole::default(), 0, None);
         for piece in pieces {
             let piece = piece?;
@@ -167,7 +167,7 @@ impl LongLog<'_> {
             }
             let seam = plan.seam(piece.stretches.start);
             let in_head = seam.filter(|rows| rows.end <= self.head_rows);
-            let in_head = in_head.map(|rows| of_head.name_of(rows)).transpose()?;
+            let in_head = in_head.map(|rows| of_head.name_of(rows));
             let is_of = |name: &Option<String>| name.is_none() || *name == piece.seams[0];
             if !is_of(&in_head) || next > 0 && before != piece.seams[0] {
                 let other = if is_of(&in_head) { "the piece before it" } else { "the head" };

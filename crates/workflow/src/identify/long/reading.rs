@@ -93,6 +93,31 @@ impl LongLog<'_> {
     }
 }
 
+/// The numbers of a log that is held as a whole, before anything is made of them.
+pub(super) struct Held(Vec<Vec<f64>>);
+
+impl Held {
+    pub(super) fn read(logs: &Logs, robot: &OfRobot<'_>) -> Result<Self, Error> {
+        let source = &logs.train[0];
+        let (log, used) = logs.opened(source, robot.log_of())?;
+        let mut places = used.places;
+        places.sort_unstable();
+        places.dedup();
+        let failed = |faults| Cause::Logs(vec![of_file(&source.to_string(), faults)]);
+        Ok(Self(log.read(&places, &[]).map_err(failed)?.columns))
+    }
+
+    /// Names rows by all their numbers; those beyond the end are not there.
+    pub(super) fn name_of(&self, rows: Range<usize>) -> String {
+        let of = |column: &Vec<f64>| {
+            let [from, to] = [rows.start, rows.end].map(|row| row.min(column.len()));
+            column[from..to].to_vec()
+        };
+        let numbers = self.0.iter().flat_map(of);
+        name_of(numbers.flat_map(|number| number.to_bits().to_le_bytes()))
+    }
+}
+
 /// The rows of a log that are held, as its file goes on.
 pub(super) struct Window<'a> {
     name: String,
@@ -144,13 +169,6 @@ impl<'a> Window<'a> {
         let columns =
             named.map(|(name, values)| (name.clone(), values[from..to].to_vec())).collect();
         Ok(MemoryLog { header: self.header.clone(), columns })
-    }
-
-    /// Names rows by all their numbers, as [`Window::rows`] has them.
-    pub(super) fn name_of(&mut self, rows: Range<usize>) -> Result<String, Error> {
-        let found = self.rows(rows)?;
-        let numbers = found.columns.iter().flat_map(|(_, numbers)| numbers);
-        Ok(name_of(numbers.flat_map(|number| number.to_bits().to_le_bytes())))
     }
 
     fn held(&self) -> usize {

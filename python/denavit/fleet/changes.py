@@ -122,7 +122,11 @@ def judged(
     kinds = [(group, all(move.is_stated)) for (group, _), move in zip(keys, moves)]
     for kind in dict.fromkeys(kinds):
         own = [(key, move) for key, move, one in zip(keys, moves, kinds) if one == kind]
-        scatter |= zip((key for key, _ in own), fitted([move.ratios() for _, move in own]))
+        # an effect raises the residuals of all joints: robots that changed pass for ones that
+        # differ, more than where a value moves alone
+        known = [] if kind[1] else [move.known() for _, move in own]
+        fits = fitted([move.ratios() for _, move in own], known)
+        scatter |= zip((key for key, _ in own), fits)
     changes: dict[str, list[Change]] = {robot: [] for robot in robots}
     for key, move in zip(keys, moves):
         for robot, change in zip(tested[key], move.changes(key[1], scatter[key])):
@@ -151,11 +155,16 @@ class Moved:
 
     def ratios(self) -> Ratios:
         """All that tells of the scatter: tonight, and the nights before."""
-        has = self.known_degrees > 0
+        ratios, degrees = self.known()
         return (
-            np.concatenate([self.moved**2 / self.variances, self.known_ratios[has]]),
-            np.concatenate([np.ones(len(self.moved)), self.known_degrees[has]]),
+            np.concatenate([self.moved**2 / self.variances, ratios]),
+            np.concatenate([np.ones(len(self.moved)), degrees]),
         )
+
+    def known(self) -> Ratios:
+        """What the nights before tell of it, which were accepted."""
+        has = self.known_degrees > 0
+        return self.known_ratios[has], self.known_degrees[has]
 
     def changes(self, name: str, fit: Scatter) -> Iterator[Change]:
         """The changes of the robots, in their order."""

@@ -55,16 +55,23 @@ Ratios = tuple[Array, Array]
 """Variance ratios of a parameter, and the degrees of freedom of each."""
 
 
-def fitted(parameters: Sequence[Ratios]) -> list[Scatter]:
+def fitted(parameters: Sequence[Ratios], known: Sequence[Ratios] = ()) -> list[Scatter]:
     """The scatter of each parameter, of its variance ratios. How alike robots are is one number for
     all parameters: else a change of some robots in one of them would pass for robots that differ.
     It is known with a probability only, and tests take the mean over it. Some ratios may be those
-    of robots that changed.
+    of robots that changed: so ``known`` ones, of nights that were accepted, say how alike robots
+    are, as soon as they say as much as those of this night.
     """
     profiles = [_profile(ratios, degrees) for ratios, degrees in parameters]
     if not profiles:
         return []
-    total = np.sum([likelihoods for likelihoods, _ in profiles], axis=0)
+    all_degrees, before = (
+        sum(float(degrees.sum()) for _, degrees in each) for each in (parameters, known)
+    )
+    alike = profiles
+    if 2 * before >= all_degrees:
+        alike = [_profile(ratios, degrees) for ratios, degrees in known]
+    total = np.sum([likelihoods for likelihoods, _ in alike], axis=0)
     weights = np.exp(total - total.max())
     weights /= weights.sum()
     return [

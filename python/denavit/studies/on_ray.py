@@ -35,7 +35,9 @@ def connected(address: str | None = None) -> Iterator[None]:
     if is_ours:
         _reach(address)
         try:
-            ray.init(address=address, include_dashboard=False, log_to_driver=False)
+            # without an address Ray would take whatever cluster runs here, of others perhaps
+            chosen = "local" if address is None else address
+            ray.init(address=chosen, include_dashboard=False, log_to_driver=False)
         except (ConnectionError, RuntimeError, ValueError) as error:
             raise _unreachable(address, error) from None
     try:

@@ -1,5 +1,6 @@
 """Studies: the same rows however they are run, and none lost where a run is broken off."""
 
+import importlib
 import json
 import math
 import os
@@ -440,3 +441,15 @@ def test_no_cluster_of_ray_is_said():
     with pytest.raises(Error, match="no cluster of Ray answers") as error:
         list(on_ray("127.0.0.1:1")(study, range(1)))
     assert "ray start --head" in (error.value.hint or "")
+
+
+def test_a_function_that_nodes_cannot_import_is_said(tmp_path, monkeypatch):
+    pytest.importorskip("ray")
+    from denavit.studies.on_ray import on_ray
+
+    module = own_module(tmp_path, monkeypatch, BUILDS)
+    monkeypatch.delenv("PYTHONPATH")
+    study = studies.Study("asked", importlib.import_module(module).asked, 1)
+    with pytest.raises(Error, match="a node cannot import") as error:
+        list(on_ray()(study, range(1)))
+    assert "PYTHONPATH" in (error.value.hint or "")

@@ -105,8 +105,10 @@ def _got(ray: Any, study: Study, done: list[Any]) -> list[Row]:
     except ray.exceptions.RayTaskError as error:
         if isinstance(error.cause, Error):
             raise error.cause from None
-        if isinstance(error.cause, ImportError):
-            cause = f"a node cannot import {study.place}: {error.cause}"
+        # a study that cannot be unpacked in a worker is a fault of Ray's system, with this text
+        last = str(error.cause).strip().rpartition("\n")[2]
+        if isinstance(error.cause, ImportError) or last.startswith("ModuleNotFoundError"):
+            cause = f"a node cannot import {study.place}: {last}"
             hint = "its module has to be on PYTHONPATH of every node before `ray start`"
             raise Error([Fault(study.name, None, None, cause, hint)]) from None
         raise

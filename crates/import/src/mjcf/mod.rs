@@ -120,9 +120,11 @@ fn read<'s>(
     note("forces of the fluid around it are no part of a model, and are left out", &settings.fluid);
     note("what actuators do by themselves is for a controller file, and is left out", &acting);
     if notes.shaped > 0 {
-        let count = notes.shaped;
-        tree.notes
-            .push(format!("masses of {count} bodies are those of their shapes, at 17 digits"));
+        let masses = match notes.shaped {
+            1 => "the mass of a body is that of its shapes".to_owned(),
+            count => format!("masses of {count} bodies are those of their shapes"),
+        };
+        tree.notes.push(format!("{masses}, at 17 digits"));
     }
     settle(&mut tree, faults);
     Read { tree, geoms, ground }

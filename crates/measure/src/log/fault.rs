@@ -386,8 +386,10 @@ fn write_steps(f: &mut fmt::Formatter<'_>, columns: &[(String, f64)]) -> fmt::Re
     let names: Vec<String> =
         columns.iter().take(NAMED).map(|(column, _)| format!("`{column}`")).collect();
     write!(f, "{}", names.join(", "))?;
-    if columns.len() > NAMED {
-        write!(f, " and {} other positions", columns.len() - NAMED)?;
+    match columns.len().saturating_sub(NAMED) {
+        0 => {}
+        1 => write!(f, " and another position")?,
+        more => write!(f, " and {more} other positions")?,
     }
     let steps = columns.iter().map(|(_, step)| *step);
     let least = steps.clone().fold(f64::INFINITY, f64::min);

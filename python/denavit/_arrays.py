@@ -15,6 +15,8 @@ Array = NDArray[np.float64]
 
 def as_doubles(name: str, value: Any) -> Array:
     """An array of doubles of what someone gave as ``name``."""
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        raise _argument(f"`{name}` has masked values", "fill them, or leave them out")
     try:
         array = np.asarray(value)
     except ValueError as error:

@@ -16,6 +16,7 @@ from . import _denavit, _options
 from ._arrays import Array
 from ._options import PathLike
 from ._results import Latex, frame, html_table
+from .errors import _argument
 
 
 class ModelWarning(UserWarning):
@@ -99,7 +100,11 @@ class Model(_denavit.Model):
         folder = None if effects is None else Path(effects)
         if isinstance(model, Mapping):
             name = str(model.get("name", "model"))
-            return cls._made(name, json.dumps(model), folder)
+            try:
+                text = json.dumps(model)
+            except (TypeError, ValueError, RecursionError) as error:
+                raise _argument(f"`model` is no JSON: {error}") from None
+            return cls._made(name, text, folder)
         return cls._made(_options.place(model, "a model"), None, folder)
 
     @classmethod

@@ -101,6 +101,22 @@ const OUTPUT: (&str, &str) = (", and take -o", ": the `scenario` of the answer w
 pub(crate) fn in_python(text: &str, command: &str) -> String {
     let text = text.replace(OUTPUT.0, OUTPUT.1);
     let (mut found, mut rest) = (String::new(), text.as_str());
+    // a whole command is for a terminal, and stays as it is
+    while let Some(at) = rest.find(COMMAND) {
+        let end = rest[at + 1..].find('`').map_or(rest.len(), |end| at + end + 2);
+        found.push_str(&keywords(&rest[..at], command));
+        found.push_str(&rest[at..end]);
+        rest = &rest[end..];
+    }
+    found + &keywords(rest, command)
+}
+
+/// How a whole command begins.
+const COMMAND: &str = "`denavit ";
+
+/// Flags as keywords, in a text without whole commands.
+fn keywords(text: &str, command: &str) -> String {
+    let (mut found, mut rest) = (String::new(), text);
     while let Some(at) = rest.find("--") {
         let (before, flag) = rest.split_at(at);
         let flag = &flag[2..];

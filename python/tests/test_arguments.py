@@ -48,6 +48,7 @@ def test_no_samples_are_no_fault(puma):
         ([1j] * 6, "instead of real numbers"),
         (None, "instead of real numbers"),
         ([[1, 2], [3]], "no array"),
+        (np.ma.array([0.0] * 6, mask=[1, 0, 0, 0, 0, 0]), "masked"),
     ],
 )
 def test_arguments_that_do_not_fit(puma, q, said):

@@ -10,13 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import denavit
 from denavit import studies
 from denavit.__main__ import main
 from denavit.fleet import FleetError, Options, judge, write_example
 from denavit.fleet.changes import Estimate, History, judged, less_common
 from denavit.fleet.distributions import two_sided
 from denavit.fleet.drift import changed, drift
-from denavit.fleet.models import read_models
+from denavit.fleet.models import kind_of, read_models
 from denavit.fleet.sources import fetched, read_fleet
 from denavit.fleet.testing import adjusted, combined
 from denavit.studies.here import in_processes
@@ -299,6 +300,33 @@ def test_a_fleet_too_small_to_know_its_scatter_has_no_alarm():
     histories = {"one": History("arm", [{"p": Estimate(1.0, 0.1)}])}
     found = judged({"one": {"p": Estimate(9.0, 0.1)}}, histories, 0.05)
     assert not found.robots["one"].is_alarm and found.robots["one"].p == 1.0
+
+
+def test_what_one_of_few_robots_does_does_not_pass_for_its_scatter():
+    random = np.random.default_rng(3)
+    for robots in (1, 2, 4):
+        histories = {
+            f"r{robot}": History(
+                "arm", [{"p": Estimate(random.normal(robot, 0.1), 0.1)} for _ in range(4)]
+            )
+            for robot in range(robots)
+        }
+        for size, is_found in ((0.0, False), (3.0, True)):
+            tonight = {robot: {"p": Estimate(float(robot[1:]), 0.1)} for robot in histories}
+            tonight["r0"] = {"p": Estimate(size, 0.1)}
+            found = judged(tonight, histories, 0.05).robots
+            assert [one.is_alarm for one in found.values()] == [is_found] + [False] * (robots - 1)
+            # nor does it widen what the diagnosis believes
+            assert found["r0"].changes[0].ratio < 5
+
+
+def test_robots_with_values_of_their_own_are_of_one_kind():
+    model = denavit.load("puma560").to_dict()
+    other = json.loads(json.dumps(model))
+    other["name"], other["constants"]["a2"]["value"] = "mine", 0.44
+    kinds = [kind_of(json.dumps(one)) for one in (model, other)]
+    assert kinds[0] == kinds[1]
+    assert kind_of(json.dumps(denavit.load("panda").to_dict())) != kinds[0]
 
 
 def test_statistics_are_those_of_the_books():

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -41,7 +41,7 @@ class History:
     """The nights of a robot that were accepted, less what the whole fleet did in them."""
 
     group: str
-    """Robots of the same group have the same parameters: they share a model."""
+    """Robots of the same group have the same parameters, whatever their values."""
     nights: list[Night] = field(default_factory=list)
 
     def mean(self, name: str) -> tuple[float, float, float, int]:
@@ -117,22 +117,41 @@ def judged(
         )
         for group, name in keys
     ]
-    scatter: dict[tuple[str, str], Scatter] = {}
-    # values and residuals are alike in different ways
-    kinds = [(group, all(move.is_stated)) for (group, _), move in zip(keys, moves)]
-    for kind in dict.fromkeys(kinds):
-        own = [(key, move) for key, move, one in zip(keys, moves, kinds) if one == kind]
-        # an effect raises the residuals of all joints: robots that changed pass for ones that
-        # differ, more than where a value moves alone
-        known = [] if kind[1] else [move.known() for _, move in own]
-        fits = fitted([move.ratios() for _, move in own], known)
-        scatter |= zip((key for key, _ in own), fits)
+    scatter = _scatter(dict(zip(keys, moves)))
     changes: dict[str, list[Change]] = {robot: [] for robot in robots}
-    for key, move in zip(keys, moves):
-        for robot, change in zip(tested[key], move.changes(key[1], scatter[key])):
-            changes[robot].append(change)
+    for group in sorted({group for group, _ in keys}):
+        own = {key: move for key, move in zip(keys, moves) if key[0] == group}
+        members = sorted({robot for key in own for robot in tested[key]})
+        for robot in members:
+            fits = scatter
+            if len(members) <= FEWEST_OTHERS:
+                places = {key: tested[key].index(robot) for key in own if robot in tested[key]}
+                fits = _scatter(own, places)
+            for key, move in own.items():
+                if robot in tested[key]:
+                    at = tested[key].index(robot)
+                    changes[robot].append(move.change(key[1], at, fits[key]))
     common = {key: move.common for key, move in zip(keys, moves)}
     return Verdicts(_alarms(robots, changes, rate), common, scatter)
+
+
+def _scatter(
+    moves: Mapping[tuple[str, str], Moved], without: Mapping[tuple[str, str], int] | None = None
+) -> dict[tuple[str, str], Scatter]:
+    """The scatter of each parameter; without what one robot did tonight, which has these places:
+    among few robots its change would pass for their scatter.
+    """
+    found: dict[tuple[str, str], Scatter] = {}
+    # values and residuals are alike in different ways
+    kinds = {key: (key[0], all(move.is_stated)) for key, move in moves.items()}
+    for kind in dict.fromkeys(kinds.values()):
+        own = [key for key, one in kinds.items() if one == kind]
+        # an effect raises the residuals of all joints: robots that changed pass for ones that
+        # differ, more than where a value moves alone
+        known = [] if kind[1] else [moves[key].known() for key in own]
+        fits = fitted([moves[key].ratios((without or {}).get(key)) for key in own], known)
+        found |= zip(own, fits if without is None else [one.beside() for one in fits])
+    return found
 
 
 @dataclass(frozen=True)
@@ -153,31 +172,32 @@ class Moved:
     """Variance ratios of the nights before."""
     known_degrees: Array
 
-    def ratios(self) -> Ratios:
-        """All that tells of the scatter: tonight, and the nights before."""
+    def ratios(self, without: int | None = None) -> Ratios:
+        """All that tells of the scatter: tonight, but for one robot, and the nights before."""
+        tonight = self.moved**2 / self.variances
+        if without is not None:
+            tonight = np.delete(tonight, without)
         ratios, degrees = self.known()
         return (
-            np.concatenate([self.moved**2 / self.variances, ratios]),
-            np.concatenate([np.ones(len(self.moved)), degrees]),
-        )
+            np.concatenate([tonight, ratios]), np.concatenate([np.ones(len(tonight)), degrees])
+        )  # fmt: skip
 
     def known(self) -> Ratios:
         """What the nights before tell of it, which were accepted."""
         has = self.known_degrees > 0
         return self.known_ratios[has], self.known_degrees[has]
 
-    def changes(self, name: str, fit: Scatter) -> Iterator[Change]:
-        """The changes of the robots, in their order."""
-        for at, is_stated in enumerate(self.is_stated):
-            own = float(self.known_ratios[at]), float(self.known_degrees[at])
-            moved, variance = float(self.moved[at]), float(self.variances[at])
-            p, expected = 0.0, 0.0
-            for weight, ratio, degrees in of_robot(fit, *own, is_stated):
-                error = math.sqrt(ratio * variance)
-                p += weight * two_sided(moved / error if error > 0 else 0.0, degrees)
-                expected += weight * ratio
-            error = math.sqrt(expected * variance)
-            yield Change(name, moved, error, min(1.0, p), expected)
+    def change(self, name: str, at: int, fit: Scatter) -> Change:
+        """The change of a robot."""
+        own = float(self.known_ratios[at]), float(self.known_degrees[at])
+        moved, variance = float(self.moved[at]), float(self.variances[at])
+        p, expected = 0.0, 0.0
+        for weight, ratio, degrees in of_robot(fit, *own, self.is_stated[at]):
+            error = math.sqrt(ratio * variance)
+            p += weight * two_sided(moved / error if error > 0 else 0.0, degrees)
+            expected += weight * ratio
+        error = math.sqrt(expected * variance)
+        return Change(name, moved, error, min(1.0, p), expected)
 
 
 def of_robot(

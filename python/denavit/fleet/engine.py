@@ -21,7 +21,7 @@ from ..studies.here import Runner, in_process
 from ..studies.here import run as run_study
 from ..studies.content import digest
 from .changes import Estimate, History, Judged, Night, Verdicts, judged, less_common
-from .models import read_models, widened
+from .models import kind_of, read_models, widened
 from .night import diagnosed, identified
 from .sources import FleetError, RobotNight, fault, read_fleet
 
@@ -137,7 +137,7 @@ def run(
     nights = sorted({one.night for one in all_logs})
     _check(place, robots, nights, options)
     fleet = Fleet(root, nights, robots, options.rate, models=dict(models))
-    groups = {robot: digest(text.encode())[:16] for robot, text in models.items()}
+    groups = {robot: digest(kind_of(text).encode())[:16] for robot, text in models.items()}
     for robot in robots:
         fleet.histories[robot] = History(groups[robot])
     for night, logs in groupby(all_logs, key=lambda one: one.night):

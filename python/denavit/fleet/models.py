@@ -71,3 +71,11 @@ def widened(text: str, stds: dict[str, float]) -> str:
             if std is not None and isinstance(value, dict) and "std" in value:
                 drive[key] = value | {"std": max(std, float(value["std"]))}
     return json.dumps(model)
+
+
+def kind_of(text: str) -> str:
+    """The kind of robot that a model is of: its links and joints, whatever their values. Robots
+    with values of their own share what is known of how values scatter.
+    """
+    links = json.loads(text)["links"]
+    return json.dumps([[link["name"], (link.get("joint") or {}).get("type")] for link in links])

@@ -41,6 +41,10 @@ class Scatter:
     pooled: float
     """Degrees of freedom of all that was fitted: no robot has more."""
 
+    def beside(self) -> Scatter:
+        """The same for a robot that is none of those that were fitted."""
+        return Scatter(self.ratios, self.weights, self.pooled + 1)
+
     def of_robot(self, own: float, degrees: float) -> list[tuple[float, float, float]]:
         """Weight, ratio and degrees of freedom of a robot with an own estimate."""
         found = []
@@ -69,7 +73,7 @@ def fitted(parameters: Sequence[Ratios], known: Sequence[Ratios] = ()) -> list[S
         sum(float(degrees.sum()) for _, degrees in each) for each in (parameters, known)
     )
     alike = profiles
-    if 2 * before >= all_degrees:
+    if 0 < before and 2 * before >= all_degrees:
         alike = [_profile(ratios, degrees) for ratios, degrees in known]
     total = np.sum([likelihoods for likelihoods, _ in alike], axis=0)
     weights = np.exp(total - total.max())

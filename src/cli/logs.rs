@@ -26,25 +26,26 @@ pub(crate) fn listed(logs: &[LogSource]) -> String {
     names.join(", ")
 }
 
-/// A run as the file of a name: MCAP if it ends so, otherwise CSV.
+/// A run as the file of a name: MCAP if it ends so, otherwise CSV. Other formats are only read.
 pub(crate) fn run_file(path: &Path, log: &Log) -> Result<Vec<u8>, Failure> {
-    let is_mcap = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"));
-    if is_mcap { mcap(path, log) } else { Ok(log.to_csv().into_bytes()) }
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let written = match ending.as_str() {
+        "mcap" => mcap(log),
+        "parquet" | "arrow" | "feather" | "ipc" | "db3" => Err("runs are CSV or MCAP".to_owned()),
+        _ => Ok(log.to_csv().into_bytes()),
+    };
+    let file = path.display().to_string();
+    written.map_err(|cause| OutputFailure::NotOfFormat { file, cause }.into())
 }
 
 #[cfg(feature = "mcap")]
-fn mcap(path: &Path, log: &Log) -> Result<Vec<u8>, Failure> {
-    let Log { header, columns, values } = log;
-    logs::write_mcap(&logs::McapRows { header, columns, values }).map_err(|cause| {
-        let file = path.display().to_string();
-        OutputFailure::NotOfFormat { file, cause }.into()
-    })
+fn mcap(Log { header, columns, values }: &Log) -> Result<Vec<u8>, String> {
+    logs::write_mcap(&logs::McapRows { header, columns, values })
 }
 
 #[cfg(not(feature = "mcap"))]
-fn mcap(path: &Path, _: &Log) -> Result<Vec<u8>, Failure> {
-    let cause = "this build does not write MCAP: `cargo install --path . --features mcap` in the \
-                 sources of denavit builds one that does";
-    let (file, cause) = (path.display().to_string(), cause.to_owned());
-    Err(OutputFailure::NotOfFormat { file, cause }.into())
+fn mcap(_: &Log) -> Result<Vec<u8>, String> {
+    Err("this build does not write MCAP: `cargo install --path . --features mcap` in the sources \
+         of denavit builds one that does"
+        .to_owned())
 }

@@ -43,7 +43,7 @@ impl OutputFailure {
             Self::TwoDocuments => "give all but one of them a file",
             Self::NoFolder => "give the path of a folder; `./-` is one of that name",
             Self::SameOutput(_) => "give each a file of its own",
-            Self::NotOfFormat { .. } => "a name that does not end in .mcap is written as CSV",
+            Self::NotOfFormat { .. } => "a name that ends in .csv is written as CSV",
         })
     }
 }

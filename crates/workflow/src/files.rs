@@ -282,7 +282,7 @@ impl Files {
             return Err(outside());
         }
         let said = |error: io::Error| match error.kind() {
-            io::ErrorKind::NotFound => outside(),
+            io::ErrorKind::NotFound => format!("{} has no such file", folder.display()),
             _ => reason(&error),
         };
         let whole = folder.join(relative).canonicalize().map_err(said)?;

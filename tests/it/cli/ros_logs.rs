@@ -33,6 +33,18 @@ fn values(text: &str) -> Vec<f64> {
     all.iter().filter_map(|one| one["value"].as_f64()).collect()
 }
 
+/// Nobody is given CSV under the name of another format.
+#[test]
+fn a_run_is_not_written_as_what_it_is_not() {
+    let directory = with_arm("other");
+    for file in ["run.parquet", "run.db3", "run.ARROW"] {
+        let run = run(&directory, &format!("simulate train.json -o {file}"));
+        assert_eq!(run.code, Some(2), "{}", run.stdout);
+        assert!(run.stderr.contains("runs are CSV or MCAP"), "{}", run.stderr);
+        assert!(!directory.path.join(file).exists());
+    }
+}
+
 /// A folder of a bag around a file.
 fn bag(directory: &Directory, file: &str) {
     let folder = directory.path.join("bag");

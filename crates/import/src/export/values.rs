@@ -48,6 +48,14 @@ pub(super) fn notes(numbers: &Numbers, is_urdf: bool) -> Vec<String> {
         notes
             .push(format!("these have constant torques that cannot be said: {}", listed(&offsets)));
     }
+    let massless = with(&|id| {
+        let body = numbers.body(id);
+        body.is_some_and(|one| one.mass.is_zero() && one.inertia.iter().any(|i| !i.is_zero()))
+    });
+    if !massless.is_empty() {
+        let links = listed(&massless);
+        notes.push(format!("these have inertia and no mass, which readers may refuse: {links}"));
+    }
     if !robot.effects.is_empty() {
         let names: Vec<String> = robot.effects.iter().map(|effect| effect.effect.clone()).collect();
         notes.push(format!("effects are left out: {}", listed(&names)));

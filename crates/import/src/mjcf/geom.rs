@@ -102,10 +102,10 @@ fn solid(
     half_length: Option<Rational>,
     faults: &mut Faults,
 ) -> Option<Solid> {
-    let given: Vec<Rational> = match geom.get("size") {
+    let given: Vec<Rational> = match geom.size() {
         None => Vec::new(),
-        Some(size) => {
-            let found = size.text.split_whitespace().map(crate::exact::decimal).collect();
+        Some((size, words)) => {
+            let found = words.into_iter().map(crate::exact::decimal).collect();
             let Some(found) = found else {
                 crate::urdf::wrong(size, "`size`", "numbers", faults);
                 return None;

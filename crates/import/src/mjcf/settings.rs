@@ -234,14 +234,17 @@ impl<'s> Settings<'s> {
         if element.attributes().any(|(key, _)| TURNS.contains(&key)) {
             values.retain(|key, _| !TURNS.contains(key));
         }
+        let of_class = values.get("size").copied();
         values.extend(element.attributes());
-        Attributes { values, at: element.at() }
+        Attributes { values, of_class, at: element.at() }
     }
 }
 
 /// Attributes of an element, its class among them.
 pub(crate) struct Attributes<'s> {
     values: BTreeMap<&'s str, Text<'s>>,
+    /// The size that the class gives: entries that the element does not give are its.
+    of_class: Option<Text<'s>>,
     pub(crate) at: usize,
 }
 
@@ -249,6 +252,15 @@ impl<'s> Attributes<'s> {
     /// The value of an attribute.
     pub(crate) fn get(&self, key: &str) -> Option<Text<'s>> {
         self.values.get(key).copied()
+    }
+
+    /// The words of its size: those of the class stand behind its own.
+    pub(crate) fn size(&self) -> Option<(Text<'s>, Vec<&'s str>)> {
+        let own = self.get("size")?;
+        let mut words: Vec<&str> = own.text.split_whitespace().collect();
+        let of_class = self.of_class.into_iter().flat_map(|size| size.text.split_whitespace());
+        words.extend(of_class.skip(words.len()));
+        Some((own, words))
     }
 
     /// A number, if it is there and right.

@@ -140,3 +140,18 @@ fn what_a_model_has_not_is_left_out_with_a_note() {
     assert!(gains.contains("`servo`, `j`, `sucker`"), "{notes:?}");
     assert!(!gains.contains("plain") && !gains.contains("passes"), "{notes:?}");
 }
+
+/// MuJoCo's own reading: sizes that a geom does not give are those of its class.
+#[test]
+fn a_geom_keeps_the_sizes_of_its_class_behind_its_own() {
+    let mass = |class: &str, size: &str| {
+        let text = format!(
+            "<mujoco><default>{class}</default><worldbody><body name=\"arm\"><joint name=\"arm\"/>\
+             <geom type=\"capsule\" size=\"{size}\"/></body></worldbody></mujoco>"
+        );
+        value(&imported(&text, &Options::default()), "m_arm")
+    };
+    let whole = mass("", "0.05 0.3");
+    assert_eq!(mass("<geom size=\"0.1 0.3\"/>", "0.05"), whole);
+    assert_eq!(mass("<geom size=\"0.1 0.7\"/>", "0.05 0.3"), whole);
+}

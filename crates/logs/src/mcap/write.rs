@@ -23,6 +23,8 @@ use std::collections::BTreeMap;
 use std::io::Cursor;
 
 /// The topic of joints, and of what their controller wants.
+/// Bytes of messages in a chunk.
+const CHUNK: u64 = 1 << 17;
 const JOINTS: &str = "/joint_states";
 const CONTROLLER: &str = "/controller_state";
 
@@ -205,7 +207,12 @@ pub fn write_mcap(rows: &Rows<'_>) -> Result<Vec<u8>, String> {
     let failed = |error: McapError| error.to_string();
     let columns = rows.columns;
     let time = columns.iter().position(|column| column == "t").ok_or("no column `t`")?;
-    let options = WriteOptions::new().compression(None).profile("ros2").library("denavit");
+    // a file that is cut keeps its whole chunks: they are small
+    let options = WriteOptions::new()
+        .compression(None)
+        .chunk_size(Some(CHUNK))
+        .profile("ros2")
+        .library("denavit");
     let mut writer = Writer::with_options(Cursor::new(Vec::new()), options).map_err(failed)?;
     let metadata = rows.header.iter().cloned().collect();
     let metadata = Metadata { name: METADATA.to_owned(), metadata };

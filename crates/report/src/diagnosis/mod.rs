@@ -373,7 +373,27 @@ impl DiagnosisPage<'_> {
             let caption = "The best of the round, marked, and those that came next.".to_owned();
             parts.push(Part::Table(HtmlTable { caption, columns, rows: rows.collect() }));
         }
+        parts.extend(self.exchanged().map(|text| Part::Paragraph { text }));
         Some(Section { heading: "Evidence".to_owned(), parts })
+    }
+
+    /// What rounds took and is not there in the end, and what is there in its place.
+    fn exchanged(&self) -> Option<String> {
+        let taken: Vec<usize> =
+            self.found.steps.iter().filter(|step| step.is_taken).map(|step| step.added).collect();
+        let found: Vec<usize> = self.found.effects.iter().map(|one| one.candidate).collect();
+        let without = |all: &[usize], others: &[usize]| -> String {
+            let rest = all.iter().filter(|one| !others.contains(one));
+            rest.map(|&one| in_words(&self.candidates[one])).collect::<Vec<_>>().join(", ")
+        };
+        let [gone, new] = [without(&taken, &found), without(&found, &taken)];
+        let text = "After each round effects are exchanged for others that make the logs more \
+                    likely";
+        match (gone.is_empty(), new.is_empty()) {
+            (false, false) => Some(format!("{text}: {new} stands in the place of {gone}.")),
+            (false, true) => Some(format!("{text}, or left out: {gone} is not there in the end.")),
+            _ => None,
+        }
     }
 
     fn round(&self, round: usize, step: &Step) -> String {

@@ -32,8 +32,8 @@ impl DiagnosisPage<'_> {
             })
             .collect();
         if rows.is_empty() {
-            let text = "No other effect of the catalogue comes near: all rivals are less likely \
-                        than the odds that are listed."
+            let text = "No other effect of the catalogue comes near: with any in its place these \
+                        logs are less than a hundredth as likely."
                 .to_owned();
             return Part::Paragraph { text };
         }

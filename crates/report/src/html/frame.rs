@@ -53,12 +53,18 @@ pub(super) fn filled(page: &Page) -> String {
     template.render(Serde(&frame)).expect("the template asks for what a page has")
 }
 
-/// A text for HTML in which names between backticks are code, as messages write them.
+/// A text for HTML in which names between backticks are code, as messages write them. A name may
+/// have backticks of its own, within words: then they stay as they are.
 fn with_code(text: &str) -> String {
+    let opens = |before: &str| before.chars().next_back().is_none_or(|last| " (\n".contains(last));
+    let closes = |after: &str| after.chars().next().is_none_or(|next| " ,.;:)'\n".contains(next));
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
     while let Some((before, inside)) = rest.split_once('`') {
         let Some((inside, after)) = inside.split_once('`') else { break };
+        if inside.trim().is_empty() || !opens(before) || !closes(after) {
+            return HtmlEscape(text).to_string();
+        }
         out.push_str(&format!("{}<code>{}</code>", HtmlEscape(before), HtmlEscape(inside)));
         rest = after;
     }
@@ -73,5 +79,8 @@ mod tests {
     fn code_stands_between_backticks_and_stays_text() {
         assert_eq!(with_code("of `q_1` and <b>"), "of <code>q_1</code> and &lt;b&gt;");
         assert_eq!(with_code("`<i>` one ` left"), "<code>&lt;i&gt;</code> one ` left");
+        for own in ["v\"`x`.csv: `q`", "tr`a`ain`.csv has `q`", "a`b`c", "` `"] {
+            assert_eq!(with_code(own), HtmlEscape(own).to_string());
+        }
     }
 }

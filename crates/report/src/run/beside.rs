@@ -76,8 +76,13 @@ pub(crate) fn beside_parts(model: &PlantModel, log: &Log, beside: &LogBeside) ->
     }
     let span = format!("{} to {} s", short(beside.start_s), short(beside.end_s()));
     let mut parts = Vec::new();
+    let is_beside = |t_s: &f64| (beside.start_s..=beside.end_s()).contains(t_s);
     if rows.is_empty() {
-        let text = format!("{} ({span}) has no time in common with the run.", beside.file);
+        let file = &beside.file;
+        let text = match shown.times.iter().any(is_beside) {
+            false => format!("{file} ({span}) has no time in common with the run."),
+            true => format!("Nothing of {file} ({span}) is compared: no joint of the run moves."),
+        };
         parts.push(Part::Paragraph { text });
     } else {
         let headings = [

@@ -58,7 +58,8 @@ const MOST_JOINTS: usize = 6;
 const BLUE: &str = "stroke=\"#1f5fd0\" stroke-width=\"1.6\"";
 const WANTED: &str = "stroke=\"#d9730d\" stroke-width=\"1.6\" stroke-dasharray=\"5 4\"";
 const GREY: &str = "stroke=\"#5a6472\" stroke-width=\"1.1\"";
-const COLOURS: [&str; 6] = ["#1f5fd0", "#d62728", "#2a9134", "#d9730d", "#7a4fb3", "#5a6472"];
+/// Those of curves on pages: told apart with any colour blindness.
+const COLOURS: [&str; 6] = ["#1f5fd0", "#b8860b", "#7a0f2e", "#ff5663", "#9f81af", "#2e1a6b"];
 const HEADING: &str = "font-size=\"13\" font-weight=\"bold\" fill=\"#222\"";
 
 /// SVG of a run of this plant. The same run gives the same bytes.

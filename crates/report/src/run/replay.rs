@@ -369,7 +369,7 @@ fn data(
         support: balance.support,
         events,
         ground: is_walker.then_some([model.ground.point, model.ground.normal]),
-        grid_m: round_step(size / 4.0),
+        grid_m: round_step((size / 4.0).max(reach / 25.0)),
         size,
         reach,
         center,
@@ -415,6 +415,7 @@ fn round_bodies(model: &PlantModel, frames: &[Frame], size: f64, links: &mut [Li
         let radius = nearest.is_finite().then_some((0.5 * nearest).max(0.02 * size));
         roots.iter().for_each(|&root| links[root].radius = radius);
     } else if let [only] = model.contacts.as_slice()
+        && norm(only.position) <= BALL * size
         && model.fall_points.is_empty()
         && !links.iter().any(|link| link.is_joint)
     {
@@ -440,8 +441,13 @@ fn number(link: Option<usize>) -> i64 {
 fn size_and_middle(model: &PlantModel, links: &[LinkData], frames: &[Frame]) -> (f64, Vec3) {
     let mut points: Vec<Vec3> = Vec::new();
     for frame in frames {
-        let bodies = frame.links.iter().zip(links).filter(|(_, link)| link.is_body);
-        points.extend(bodies.map(|(frame, _)| frame.origin));
+        for (place, link) in links.iter().enumerate().filter(|(_, link)| link.is_body) {
+            // a body begins where what carries it is
+            let carrier = usize::try_from(link.carrier).ok();
+            points.extend(
+                [Some(place), carrier].into_iter().flatten().map(|at| frame.links[at].origin),
+            );
+        }
         let ends = model.contacts.iter().chain(&model.fall_points);
         points.extend(ends.map(|point| frame.links[point.link].point(point.position)));
     }

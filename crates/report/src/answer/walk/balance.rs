@@ -163,7 +163,8 @@ pub(super) fn margin_cells(what: BalanceCriterion, course: &Course) -> Vec<Vec<S
         let found = course.margins(*criterion)?;
         Some(vec![
             name.replace('_', "-"),
-            format!("{:.2}", 1e3 * found.least_m),
+            // what rounds to zero has no sign
+            format!("{:.2}", (1e5 * found.least_m).round() / 1e2 + 0.0),
             format!("{:.4}", found.at_s),
             format!("{:.2}", 1e3 * found.largest_m),
             percent(found.outside),

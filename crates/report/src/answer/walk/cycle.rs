@@ -1,8 +1,11 @@
 //! The cycle of a gait and its Floquet multipliers, as text, JSON and pictures.
 
+use crate::html::{Grade, VerdictLine};
 use crate::walk::{ReturnMapPicture, UnitCircle};
 use crate::{Align, Ordered, Table, short};
+use denavit_simulate::Stop;
 use denavit_simulate::scenario::Scenario;
+use denavit_walk::balance::Course;
 use denavit_walk::poincare::{
     Convergence, Fate, Multiplier, PoincareAnalysis, Section, Share, shares,
 };
@@ -16,6 +19,40 @@ fn largest(found: &PoincareAnalysis) -> f64 {
 /// Whether deviations from the cycle die.
 pub fn is_stable(found: &PoincareAnalysis) -> bool {
     Fate::of(largest(found)) == Fate::Die
+}
+
+/// What becomes of deviations, in words.
+fn fate(found: &PoincareAnalysis) -> &'static str {
+    match (found.contradiction(), Fate::of(largest(found))) {
+        (Some(_), _) => "not confirmed",
+        (None, Fate::Die) => "stable: deviations die",
+        (None, Fate::Stay) => "neither stable nor unstable: some deviations stay as they are",
+        (None, Fate::Grow) => "not stable: a deviation grows",
+    }
+}
+
+/// Whether a gait repeats itself and deviations die, in one sentence.
+pub(super) fn gait_verdict(
+    course: &Course,
+    cycle: &Result<PoincareAnalysis, String>,
+) -> VerdictLine {
+    let end = course.run.as_ref().map(|run| &run.stop).filter(|stop| **stop != Stop::End);
+    match (end, cycle) {
+        (_, Ok(found)) => {
+            let is_good = found.contradiction().is_none() && is_stable(found);
+            let modulus = short(largest(found));
+            let text = format!("A cycle, {} (largest multiplier {modulus}).", fate(found));
+            VerdictLine { grade: if is_good { Grade::Good } else { Grade::Bad }, text }
+        }
+        (None, Err(_)) => {
+            let text = "The gait comes to its end, and is no cycle.".to_owned();
+            VerdictLine { grade: Grade::Fair, text }
+        }
+        (Some(stop), Err(_)) => {
+            let text = format!("The gait does not come to its end: {stop}.");
+            VerdictLine { grade: Grade::Bad, text }
+        }
+    }
 }
 
 /// Floquet multipliers in the unit circle.
@@ -193,12 +230,7 @@ fn write(out: &mut String, scenario: &Scenario, found: &PoincareAnalysis) -> fmt
              meet others; the multipliers are not confirmed"
         )?;
     }
-    let verdict = match (found.contradiction(), Fate::of(largest(found))) {
-        (Some(_), _) => "not confirmed",
-        (None, Fate::Die) => "stable: deviations die",
-        (None, Fate::Stay) => "neither stable nor unstable: some deviations stay as they are",
-        (None, Fate::Grow) => "not stable: a deviation grows",
-    };
+    let verdict = fate(found);
     writeln!(out, "{verdict} (largest multiplier {})", short(largest(found)))?;
     Ok(())
 }

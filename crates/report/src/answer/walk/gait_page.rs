@@ -1,7 +1,7 @@
 //! A gait on one page, with the figures of thesis chapter 4.
 
 use super::balance::{BalanceCriterion, balance_picture, margin_cells};
-use super::cycle::{multipliers_picture, returns_picture, size};
+use super::cycle::{gait_verdict, multipliers_picture, returns_picture, size};
 use crate::answer::run::drawn_run;
 use crate::html::{Cell, Fact, Heading, HtmlTable, Page, Part, Row, Section};
 use crate::run::{GaitCurve, GaitPicture, ShownWithRun, replay};
@@ -27,6 +27,7 @@ pub fn gait_page(
         let caption = "Snapshots, joints, forces of the ground (figures 4.3 and 4.5).";
         moves.push(figure(drawn_run(scenario, run, None), caption));
     }
+    let verdict = Some(gait_verdict(&course, &cycle));
     let energy = course.energy(scenario.plant.as_ref());
     let over = format!("{}, {:.4} s", course.over.word(), course.duration_s());
     let model = scenario.plant.model().clone();
@@ -58,7 +59,7 @@ pub fn gait_page(
     Page {
         watches: false,
         title: scenario.name.replace('_', " "),
-        verdict: None,
+        verdict,
         lead: scenario.description.clone(),
         facts,
         sections: vec![

@@ -23,12 +23,13 @@ class Capsule {
     const ball = new SphereGeometry(radius, ROUND, ROUND / 2);
     this.ends = [new Mesh(ball, material), new Mesh(ball, material)];
     this.group = new Group().add(this.rod, ...this.ends);
+    this.least = 1e-3 * radius;
   }
 
   put(from, to) {
     const way = to.clone().sub(from);
     const length = way.length();
-    this.group.visible = length > 1e-5;
+    this.group.visible = length > this.least;
     if (!this.group.visible) return;
     this.rod.position.copy(from).addScaledVector(way, 0.5);
     this.rod.quaternion.setFromUnitVectors(UP, way.divideScalar(length));

@@ -41,7 +41,9 @@ function ends(data, poses) {
     if (!link.is_body && !link.radius) return [];
     const [origin] = poses[at];
     const wide = link.radius ?? 0;
-    return wide === 0 ? [origin] : [-wide, wide].flatMap(away =>
+    // a body begins where what carries it is
+    const begins = link.is_body && link.carrier >= 0 ? [poses[link.carrier][0].clone()] : [];
+    return wide === 0 ? [origin, ...begins] : [-wide, wide].flatMap(away =>
       [0, 1, 2].map(axis => origin.clone().setComponent(axis, origin.getComponent(axis) + away)));
   });
   const points = [...data.tips, ...data.contacts].map(({ link, at }) => {

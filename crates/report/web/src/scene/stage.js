@@ -25,7 +25,7 @@ export class Stage {
     this.canvas = canvas;
     this.scene = new Scene();
     const up = new Vector3(...data.up);
-    this.camera = new PerspectiveCamera(ANGLE, 1, 0.01 * data.size, 200 * data.size);
+    this.camera = new PerspectiveCamera(ANGLE, 1);
     this.camera.up.copy(up);
     const sun = new DirectionalLight(0xffffff, 2.2);
     sun.position.copy(raised([0.5, -0.8, 1.4], up));
@@ -41,6 +41,9 @@ export class Stage {
     const aspect = canvas.clientWidth / canvas.clientHeight || 1;
     const far = distance(data, passed(data), { away: this.away, up, tan, aspect });
     this.away.multiplyScalar(far);
+    // a motion may pass much more than the robot is large
+    this.camera.far = Math.max(200 * data.size, 20 * far);
+    this.camera.near = Math.max(Math.min(0.01 * data.size, 0.005 * far), 5e-6 * this.camera.far);
     // what is drawn is as thick as the picture is large
     data.view = 2 * far * tan;
     this.ground = this.makeGround(data);

@@ -78,7 +78,8 @@ def _table_of(path: str) -> Table | None:
     pa = _arrow.arrow()
     try:
         table = _arrow.read_table(path, is_parquet=magic != ARROW)
-        return Table(path, _arrow.header_of(table.schema), _arrow.columns(table))
+        said = _arrow.header_of(table.schema) + _arrow.left_out(table)
+        return Table(path, said, _arrow.columns(table))
     except (pa.ArrowException, OSError, ValueError) as error:
         raise Error([Fault(path, None, None, f"cannot be read: {error}", None)]) from None
 

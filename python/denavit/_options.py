@@ -7,6 +7,7 @@ import os
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -14,6 +15,7 @@ import numpy as np
 
 from . import _denavit
 from ._arrays import Array
+from ._arrow import NO_NUMBERS
 from .errors import Error, _argument
 
 Progress = Callable[[str, "float | None"], "bool | None"]
@@ -127,5 +129,26 @@ def answered(
     logs: Iterable[Columns] = (),
 ) -> tuple[dict[str, Any], bool, list[str]]:
     """The JSON of a command, whether its answer is good, and notes. ``logs`` are in memory."""
-    text, is_good, notes = _denavit.run([*arguments, "--json"], progress, list(logs))
+    given = list(logs)
+    try:
+        text, is_good, notes = _denavit.run([*arguments, "--json"], progress, given)
+    except Error as error:
+        raise _with_types(error, given) from None
     return json.loads(text), is_good, notes
+
+
+def _with_types(error: Error, logs: Iterable[Columns]) -> Error:
+    """The same; of a column that is said not to be there, and is no column of numbers, its type."""
+    faults = list(error.faults)
+    for _, _, log, header, _ in logs:
+        for key, kind in header:
+            if not key.startswith(NO_NUMBERS):
+                continue
+            name = f"`{key.removeprefix(NO_NUMBERS)}`"
+            faults = [
+                replace(one, cause=f"{one.cause} of numbers: {name} is of type {kind}")
+                if one.file == log and f"no column {name}" in one.cause
+                else one
+                for one in faults
+            ]
+    return type(error)(faults)

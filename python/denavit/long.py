@@ -21,7 +21,7 @@ import numpy as np
 
 from . import _logs, _options, studies
 from ._arrays import Array
-from ._arrow import arrow, header_of
+from ._arrow import arrow, header_of, refuse_twins
 from ._options import Columns, PathLike, Progress
 from ._results import answer
 from .errors import Error, Fault, _argument
@@ -38,7 +38,7 @@ BATCH = 1 << 16
 FEWEST = 1000
 """Rows of a head, at least."""
 
-NUMBERS = ("int", "uint", "float", "double", "timestamp")
+NUMBERS = ("int", "uint", "halffloat", "float", "double", "timestamp")
 """Beginnings of the names of types that are numbers here."""
 
 
@@ -65,8 +65,10 @@ class _Table:
         self.ends = np.cumsum(counts, dtype=np.int64)
         self.kinds = {field.name: str(field.type) for field in self.file.schema_arrow}
         self.names = [name for name, kind in self.kinds.items() if kind.startswith(NUMBERS)]
-        if len(self.kinds) < len(self.file.schema_arrow):
-            raise Error([Fault(str(path), None, None, "has two columns of one name", None)])
+        try:
+            refuse_twins(self.file.schema_arrow.names)
+        except ValueError as error:
+            raise Error([Fault(str(path), None, None, str(error), None)]) from None
         self.header = header_of(self.file.schema_arrow)
         self.epochs: dict[str, int] = {}
         if self.rows == 0:
@@ -248,7 +250,10 @@ def _long_table(log: PathLike, head: int, time: str) -> _Table:
         hint = "denavit.identify holds a log as a whole; or choose a smaller `head`"
         raise Error([Fault(str(table.path), None, None, cause, hint)])
     if time not in table.names:
-        raise _argument(f"`{table.path.name}` has no column of numbers `{time}`", "`time` names it")
+        kind = table.kinds.get(time)
+        typed = f": it is of type {kind}" if kind else ""
+        cause = f"`{table.path.name}` has no column of numbers `{time}`{typed}"
+        raise _argument(cause, "`time` names it")
     return table
 
 

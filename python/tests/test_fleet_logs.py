@@ -5,7 +5,7 @@ import io
 import numpy as np
 import pytest
 
-from denavit.fleet import Options, judge, write_example
+from denavit.fleet import FleetError, Options, judge, write_example
 from denavit.fleet.sources import read_fleet
 
 pa = pytest.importorskip("pyarrow")
@@ -82,3 +82,20 @@ def test_of_several_logs_one_has_to_judge(example, table, tmp_path):
     path.write_text("robot,night,train\narm,1,a.csv;b.csv\n")
     reason = outcome(example, path, tmp_path / "out")["reason"]
     assert "no log judges" in reason, reason
+
+
+@pytest.mark.parametrize("kind", ["csv", "parquet"])
+def test_two_columns_of_one_name_are_refused(example, table, kind, tmp_path):
+    names = [name if name != "tau_elbow" else "q_elbow" for name in table.column_names]
+    twice = logged(tmp_path / "logs", table.rename_columns(names), kind, {})
+    reason = outcome(example, twice, tmp_path / "out")["reason"]
+    assert "two columns of one name, `q_elbow`" in reason and f"{NIGHT}.{kind}" in reason
+
+
+@pytest.mark.parametrize("kind", ["csv", "parquet"])
+def test_a_manifest_with_two_columns_of_one_name_is_refused(kind, tmp_path):
+    path = tmp_path / f"manifest.{kind}"
+    twice = pa.table([["arm"], ["1"], ["a.csv"], ["b.csv"]], ["robot", "night", "train", "train"])
+    csv.write_csv(twice, path) if kind == "csv" else pq.write_table(twice, path)
+    with pytest.raises(FleetError, match="two columns of one name, `train`"):
+        read_fleet(str(path))

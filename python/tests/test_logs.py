@@ -141,3 +141,48 @@ def test_what_is_no_log(arm):
             denavit.identify(arm, train)
     with pytest.raises(denavit.ArgumentError, match="train"):
         denavit.identify(arm, [])
+
+
+def test_two_columns_of_one_name_are_refused(tmp_path):
+    """Nothing says which of them is meant; with spaces around it a name is the same."""
+    pa = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    values = pa.array(np.arange(10.0))
+    for names in (["t", "q_shoulder", "q_shoulder"], ["t", "q_shoulder", " q_shoulder"]):
+        table = pa.table([values] * 3, names=names)
+        parquet.write_table(table, tmp_path / "log.parquet")
+        with pa.ipc.new_file(tmp_path / "log.arrow", table.schema) as file:
+            file.write_table(table)
+        for kind in ("parquet", "arrow"):
+            with pytest.raises(denavit.Error, match="two columns of one name, `q_shoulder`"):
+                denavit.identify("planar_2r", tmp_path / f"log.{kind}")
+
+
+def test_columns_that_are_no_numbers_are_named_with_their_type(tmp_path):
+    pa = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    texts = pa.array([f"{at}" for at in range(10)])
+    table = pa.table({"t": texts, "q_joint": pa.array(np.arange(10.0))})
+    parquet.write_table(table, tmp_path / "log.parquet")
+    with pytest.raises(denavit.Error, match="`t` of numbers: `t` is of type string"):
+        denavit.identify("planar_2r", tmp_path / "log.parquet")
+
+
+def test_every_type_of_numbers_is_read():
+    pa = pytest.importorskip("pyarrow")
+    from denavit._arrow import columns
+
+    whole = pa.array([10, None, 30], pa.int64())
+    table = pa.table({
+        "decimal": whole.cast(pa.decimal128(25, 2)),
+        "dictionary": whole.cast("double").dictionary_encode(),
+        "timestamp": whole.cast(pa.timestamp("s")),
+        "duration": whole.cast(pa.duration("s")),
+        "half": pa.array(np.array([10, np.nan, 30], np.float16)),
+        "text": pa.array(["a", "b", "c"]),
+    })  # fmt: skip
+    found = columns(table)
+    assert found.keys() == set(table.column_names) - {"text"}
+    for name, values in found.items():
+        first = 0 if name == "timestamp" else 10
+        assert values[[0, 2]].tolist() == [first, first + 20] and np.isnan(values[1]), name

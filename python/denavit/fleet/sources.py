@@ -13,7 +13,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from .. import _logs
-from .._arrow import arrow, columns, header_of, read_table
+from .._arrow import arrow, columns, header_of, left_out, read_table, refuse_twins
 from ..errors import Error, Fault
 from ..studies.cases import PassingError
 
@@ -191,8 +191,9 @@ def _table(system: Any, place: str, path: str) -> dict[str, list[Any]]:
                 how = pyarrow.csv.ConvertOptions(column_types=texts)
                 table = pyarrow.csv.read_csv(io.BytesIO(file.read()), convert_options=how)
             else:
-                table = pa.parquet.read_table(file)
-    except (pa.ArrowException, OSError) as error:
+                table = read_table(file, is_parquet=True)
+        refuse_twins(table.column_names)
+    except (pa.ArrowException, OSError, ValueError) as error:
         hint = "a Parquet or CSV file with the columns robot, night, train, validate"
         raise FleetError([fault(place, f"is no manifest: {error}", hint)]) from None
     found: dict[str, list[Any]] = table.to_pydict()
@@ -267,7 +268,7 @@ def _fetched(system: Any, base: str, name: str, inside: Path) -> ReadLog:
         raise unread(name, error, base) from None
     try:
         table = read_table(pa.BufferReader(content), is_parquet=True)
-        return _logs.Table(name, header_of(table.schema), columns(table))
+        return _logs.Table(name, header_of(table.schema) + left_out(table), columns(table))
     except (pa.ArrowException, OSError, ValueError) as error:
         raise FleetError([fault(name, f"cannot be read: {error}")]) from None
 
@@ -318,6 +319,7 @@ def _read_csv(path: str, name: str) -> _logs.Table:
         text = b"".join(line for line in lines if not line.startswith(b"#"))
         said = [line[1:].decode().partition(":") for line in lines if line.startswith(b"#")]
         header = [(key.strip(), value.strip()) for key, _, value in said]
-        return _logs.Table(name, header, columns(pyarrow.csv.read_csv(io.BytesIO(text))))
-    except (pa.ArrowException, UnicodeDecodeError) as error:
+        table = pyarrow.csv.read_csv(io.BytesIO(text))
+        return _logs.Table(name, header + left_out(table), columns(table))
+    except (pa.ArrowException, ValueError) as error:
         raise FleetError([fault(name, f"cannot be read: {error}")]) from None

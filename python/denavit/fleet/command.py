@@ -14,6 +14,7 @@ from .._progress import ProgressLine
 from ..studies.here import Runner, in_process, in_processes
 from ..studies.on_ray import connected, on_ray, ray_package
 from .engine import Fleet, Options, Outcome
+from .mapping import check_columns
 from .sources import FleetError, fault
 
 
@@ -72,16 +73,20 @@ def _runner(given: argparse.Namespace) -> Iterator[Runner]:
 
 
 def _fleet(given: argparse.Namespace) -> int:
-    restart, faults = {}, []
+    restart: dict[str, list[str]] = {}
+    faults = []
     for one in given.restart:
         robot, equals, night = one.rpartition("=")
-        restart[robot] = night
+        restart.setdefault(robot, []).append(night)
         if not (robot and equals and night):
             faults.append(fault("--restart", f"{one!r} is not ROBOT=NIGHT"))
     columns = None
     if given.columns is not None:
         try:
             columns = json.loads(given.columns.read_bytes())
+            if columns is None:
+                raise ValueError("it is null")
+            check_columns(columns, str(given.columns))
         except (OSError, ValueError) as error:
             faults.append(fault(str(given.columns), f"is no map of columns: {error}"))
     if faults:

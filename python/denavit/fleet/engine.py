@@ -21,9 +21,11 @@ from ..studies.here import Runner, in_process
 from ..studies.here import run as run_study
 from ..studies.content import digest
 from .changes import Estimate, History, Judged, Night, Verdicts, judged, less_common
+from .mapping import check_columns
 from .models import kind_of, read_models, widened
 from .night import diagnosed, identified
-from .sources import FleetError, RobotNight, fault, read_fleet
+from .sources import FleetError, RobotNight, fault, read_fleet, refuse_inside
+from .stale import Seen, without_copies
 
 Progress = Callable[[str, str, int, int], object]
 """Hears the night, what is done in it, and how many robots of how many are."""
@@ -42,8 +44,16 @@ class Options:
     """Which robots get a page of their diagnosis."""
     columns: Mapping[str, Any] | None = None
     """A map of the columns of logs."""
-    restart: Mapping[str, str] = field(default_factory=dict)
-    """Robots whose history begins anew in a night, as after a repair."""
+    restart: Mapping[str, str | Sequence[str]] = field(default_factory=dict)
+    """Robots whose history begins anew in a night, or in several, as after a repair."""
+
+    def restarts(self) -> list[tuple[str, str]]:
+        """Robots with the nights in which their history begins anew."""
+        each = {
+            robot: [nights] if isinstance(nights, str) else nights
+            for robot, nights in self.restart.items()
+        }
+        return [(robot, night) for robot, nights in each.items() for night in nights]
 
 
 @dataclass(frozen=True)
@@ -103,6 +113,8 @@ class Fleet:
     """Last accepted models; in the beginning those that were given."""
     verdicts: dict[str, Verdicts] = field(default_factory=dict)
     """By night."""
+    seen: Seen = field(default_factory=dict)
+    """Logs by their content."""
 
     def standing(self) -> dict[str, Outcome]:
         """Alarms that stand, by robot: those of the newest night, and earlier ones of robots that
@@ -130,6 +142,8 @@ def run(
     stand in ``out``, are not computed again.
     """
     options = options or Options()
+    check_columns(options.columns)
+    refuse_inside(place, Path(out))
     root, all_logs = read_fleet(place)
     logged: dict[str, str] = {}
     robots = sorted({one.robot for one in all_logs})
@@ -141,7 +155,7 @@ def run(
     for robot in robots:
         fleet.histories[robot] = History(groups[robot])
     for night, logs in groupby(all_logs, key=lambda one: one.night):
-        for robot, since in options.restart.items():
+        for robot, since in options.restarts():
             if since == night:
                 fleet.histories[robot] = History(groups[robot])
                 fleet.models[robot] = models[robot]
@@ -160,7 +174,7 @@ def _check(place: str, robots: list[str], nights: list[str], options: Options) -
     faults = []
     if not 0 < options.rate < 1:
         faults.append(fault("rate", f"{options.rate} is no share between 0 and 1"))
-    for robot, night in options.restart.items():
+    for robot, night in options.restarts():
         if robot not in robots or night not in nights:
             faults.append(fault(place, f"has no {robot} in {night}, which begins anew"))
     if faults:
@@ -202,7 +216,7 @@ class Stage:
 
 def _night(fleet: Fleet, night: str, logs: list[RobotNight], stage: Stage) -> None:
     first = {one.robot for one in logs if not fleet.histories[one.robot].nights}
-    found = dict(_identified(fleet, night, logs, stage))
+    found = without_copies(dict(_identified(fleet, night, logs, stage)), night, fleet.seen)
     values = {robot: estimates(row) for robot, row in found.items()}
     told = {robot: own for robot, own in values.items() if own}
     verdicts = judged(told, fleet.histories, stage.options.rate)
@@ -245,6 +259,8 @@ def _logs_of(one: RobotNight) -> dict[str, Any]:
     logs = [[file.path, file.size, file.changed_ns] for file in (*one.train, *one.validate)]
     return {
         "robot": one.robot,
+        "night": one.night,
+        "wrong": one.wrong,
         "train": [file.path for file in one.train],
         "validate": [file.path for file in one.validate],
         "files": logs,

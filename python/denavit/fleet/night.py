@@ -10,7 +10,7 @@ from ..diagnose import Diagnosis, FoundEffect, diagnose
 from ..identify import identify
 from ..model import load
 from ..studies.cases import Case, Row, rows
-from .sources import fetched
+from .sources import FleetError, fault, fetched
 
 
 def _given(case: Case) -> dict[str, Any]:
@@ -33,12 +33,15 @@ def _given(case: Case) -> dict[str, Any]:
     model=str,
     refused=str,
     remarks=list[str],
+    contents=list[str],
 )
 def identified(case: Case) -> Row:
     """Identifies a robot from the logs of one night alone, and its model from these and from what
     was known before.
     """
     given = _given(case)
+    if given["wrong"]:
+        raise FleetError([fault(f"{given['robot']}/{given['night']}", given["wrong"])])
     chosen = {"columns": case.options["columns"]} if case.options.get("columns") else {}
     model = load(json.loads(given["model"]))
     with fetched(case.options["root"], given["train"], given["validate"]) as logs:
@@ -61,6 +64,7 @@ def identified(case: Case) -> Row:
         "model": None if known.updated is None else known.updated.source,
         "refused": None if known.update_refused is None else logs.bare(known.update_refused),
         "remarks": [logs.bare(one) for one in found.remarks],
+        "contents": list(logs.contents),
     }
 
 

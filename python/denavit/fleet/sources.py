@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import re
 import tempfile
@@ -57,6 +58,9 @@ class RobotNight:
     night: str
     train: tuple[File, ...]
     validate: tuple[File, ...] = ()
+    wrong: str | None = None
+    """Why these logs have no answer, whatever is in them: one is missing, as after an upload that
+    broke off."""
 
 
 def opened(place: str) -> tuple[Any, str]:
@@ -106,6 +110,16 @@ def read_fleet(place: str) -> tuple[str, list[RobotNight]]:
     return root, sorted(found, key=lambda one: (one.night, one.robot))
 
 
+def refuse_inside(place: str, out: Path) -> None:
+    """Refuses answers that would stand among the logs: the next run would take them for logs."""
+    system, path = opened(place)
+    if not isinstance(system, _fs().LocalFileSystem) or not Path(path).is_dir():
+        return
+    if out.resolve().is_relative_to(Path(path).resolve()):
+        cause, hint = f"is in the folder of the logs, {place}", "name a folder beside it"
+        raise FleetError([fault(str(out), cause, hint)])
+
+
 def _of_folder(system: Any, place: str, path: str) -> list[RobotNight]:
     selector = _fs().FileSelector(path, recursive=True)
     try:
@@ -113,24 +127,38 @@ def _of_folder(system: Any, place: str, path: str) -> list[RobotNight]:
     except (arrow().ArrowException, OSError) as error:
         raise FleetError([fault(place, f"cannot be read: {error}", "check the place")]) from None
     nights: dict[tuple[str, str], list[File]] = {}
+    unfit: dict[tuple[str, str], list[str]] = {}
     for info in all_files:
         name = PurePosixPath(info.path).relative_to(path)
-        is_log = info.type == _fs().FileType.File and name.suffix.lower() in KINDS
-        if is_log and len(name.parts) in (2, 3):
-            night = name.parts[1] if len(name.parts) == 3 else name.stem
-            nights.setdefault((name.parts[0], night), []).append(_file(info, str(name)))
-    found, faults = [], []
-    for (robot, night), files in nights.items():
-        files.sort(key=lambda file: file.path)
-        judging = [file for file in files if PurePosixPath(file.path).stem.startswith("validate")]
-        train = [file for file in files if file not in judging]
-        if not train or (len(train) > 1 and not judging):
-            cause = f"{robot}/{night}: logs are called train.. and validate.., or there is one"
-            faults.append(fault(place, cause))
-        found.append(RobotNight(robot, night, tuple(train), tuple(judging)))
-    if faults:
-        raise FleetError(faults)
+        if name.suffix.lower() not in KINDS or len(name.parts) not in (2, 3):
+            continue
+        key = name.parts[0], name.parts[1] if len(name.parts) == 3 else name.stem
+        if info.type == _fs().FileType.File:
+            nights.setdefault(key, []).append(_file(info, str(name)))
+        elif len(name.parts) == 3:
+            unfit.setdefault(key, []).append(str(name))
+    found = [
+        _night_of_folder(*key, nights.get(key, []), unfit.get(key, []))
+        for key in dict.fromkeys([*nights, *unfit])
+    ]
+    if found and all(one.wrong for one in found):
+        raise FleetError([fault(place, f"{one.robot}/{one.night}: {one.wrong}") for one in found])
     return found
+
+
+def _night_of_folder(robot: str, night: str, files: list[File], unfit: list[str]) -> RobotNight:
+    """A robot-night of its logs, and of what has the name of a log and is none."""
+    files.sort(key=lambda file: file.path)
+    judging = [file for file in files if PurePosixPath(file.path).stem.startswith("validate")]
+    train = [file for file in files if file not in judging]
+    wrong = None
+    if unfit:
+        wrong = f"{', '.join(sorted(unfit))}: is no file"
+    elif not train or (len(train) > 1 and not judging):
+        wrong = "logs are called train.. and validate.., or there is one"
+        missing = "train" if not train else "validate"
+        wrong = f"no log is called {missing}..: {wrong}"
+    return RobotNight(robot, night, tuple(train), tuple(judging), wrong)
 
 
 def _file(info: Any, name: str) -> File:
@@ -148,15 +176,18 @@ def _of_manifest(system: Any, place: str, path: str) -> list[RobotNight]:
     judging = table.get("validate") or [None] * len(table["robot"])
     seen: set[tuple[str, str]] = set()
     for number, ((robot, night, train), validate) in enumerate(zip(rows, judging), start=1):
-        if None in (robot, night) or not str(robot) or not str(night) or not _names(train):
-            faults.append(fault(place, f"row {number} has no robot, night or train"))
+        if None in (robot, night) or not str(robot) or not str(night):
+            faults.append(fault(place, f"row {number} has no robot or night"))
             continue
         key = str(robot), str(night)
         if key in seen:
             faults.append(fault(place, f"row {number}: {key[0]} in {key[1]} stands there twice"))
         seen.add(key)
         logs = [[_listed(system, root, one) for one in _names(cell)] for cell in (train, validate)]
-        found.append(RobotNight(*key, tuple(logs[0]), tuple(logs[1])))
+        wrong = None if logs[0] else f"row {number} of the manifest names no log in `train`"
+        found.append(RobotNight(*key, tuple(logs[0]), tuple(logs[1]), wrong))
+    if found and all(one.wrong for one in found):
+        faults += [fault(place, str(one.wrong)) for one in found]
     if faults:
         raise FleetError(faults)
     return found
@@ -206,6 +237,8 @@ class Fetched:
 
     train: tuple[ReadLog, ...]
     validate: tuple[ReadLog, ...]
+    contents: tuple[str, ...]
+    """Names of the content of the logs that are fitted, by their bytes."""
     folders: tuple[str, ...]
     """Where they are now, which is nobody's concern."""
 
@@ -223,13 +256,15 @@ def fetched(root: str, train: Sequence[str], validate: Sequence[str]) -> Iterato
     with tempfile.TemporaryDirectory(prefix="denavit-fleet-") as inside:
         folders = inside + "/", base.rstrip("/") + "/"
         try:
-            logs = [
+            read = [
                 [_fetched(system, base, name, Path(inside)) for name in names]
                 for names in (train, validate)
             ]
+            contents = tuple(content for _, content in read[0])
+            logs = [[log for log, _ in each] for each in read]
             if not logs[1]:
                 logs = _cut(logs[0], train[0])
-            yield Fetched(tuple(logs[0]), tuple(logs[1]), folders)
+            yield Fetched(tuple(logs[0]), tuple(logs[1]), contents, folders)
         except Error as error:
             # faults name logs as the fleet does
             for folder in folders:
@@ -248,7 +283,8 @@ def unread(name: str, error: Exception, base: str = "") -> UnreadError:
     return UnreadError([fault(name, f"cannot be read: {cause}", "the next run reads it again")])
 
 
-def _fetched(system: Any, base: str, name: str, inside: Path) -> ReadLog:
+def _fetched(system: Any, base: str, name: str, inside: Path) -> tuple[ReadLog, str]:
+    """A log, and the name of its content."""
     pa = arrow()
     path = str(PurePosixPath(base) / name)
     is_local, is_parquet = isinstance(system, _fs().LocalFileSystem), _is_parquet(name)
@@ -256,19 +292,20 @@ def _fetched(system: Any, base: str, name: str, inside: Path) -> ReadLog:
         # its copy must not leave the folder
         raise FleetError([fault(name, "leads out of the place of the logs")])
     try:
-        content = _content(system, path, keeps=is_parquet or not is_local)
+        content, digest = _content(system, path, keeps=is_parquet or not is_local)
         if is_local and not is_parquet:
-            return path
+            return path, digest
         copy = inside / name
         if not is_parquet:
             copy.parent.mkdir(parents=True, exist_ok=True)
             copy.write_bytes(content)
-            return str(copy)
+            return str(copy), digest
     except (pa.ArrowException, OSError) as error:
         raise unread(name, error, base) from None
     try:
         table = read_table(pa.BufferReader(content), is_parquet=True)
-        return _logs.Table(name, header_of(table.schema) + left_out(table), columns(table))
+        said = header_of(table.schema) + left_out(table)
+        return _logs.Table(name, said, columns(table)), digest
     except (pa.ArrowException, OSError, ValueError) as error:
         raise FleetError([fault(name, f"cannot be read: {error}")]) from None
 
@@ -277,16 +314,17 @@ def _is_parquet(name: str) -> bool:
     return name.lower().endswith(".parquet")
 
 
-def _content(system: Any, path: str, *, keeps: bool) -> bytes:
+def _content(system: Any, path: str, *, keeps: bool) -> tuple[bytes, str]:
     """Reads a log from end to end, so that a store that fails is told from a log that is corrupt.
-    What is not kept is read again from the file, which the machine remembers.
+    What is not kept is read again from the file, which the machine remembers. Names it, too.
     """
-    kept = []
+    kept, named = [], hashlib.sha256()
     with system.open_input_stream(path, compression=None) as file:
         while block := file.read(BLOCK):
+            named.update(block)
             if keeps:
                 kept.append(block)
-    return b"".join(kept)
+    return b"".join(kept), named.hexdigest()
 
 
 def _cut(logs: list[ReadLog], name: str) -> list[list[ReadLog]]:

@@ -86,7 +86,7 @@ def _run(given: argparse.Namespace) -> int:
     print(f"{given.output}: {all_rows} rows, {computed} computed now")
     left = studies.again(given.output)
     if left:
-        said = f"{len(left)} could not be read and are computed again by the same command"
+        said = f"{len(left)} could not be read or computed; the same command does so again"
         print(said, file=sys.stderr)
     failed = _failed(given.output)
     return 1 if all_rows and failed == all_rows else 0

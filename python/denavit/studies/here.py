@@ -47,29 +47,49 @@ def in_processes(workers: int) -> Runner:
         pool = ProcessPoolExecutor(workers, context, initializer=_take, initargs=(study,))
         try:
             yield from windowed(indices, 2 * workers, lambda index: pool.submit(_row, index))
-        except BrokenProcessPool:
+        except WorkerKilled as error:
             hint = "perhaps memory ran out. The same call goes on with the rows that are kept"
-            fault = Fault(study.name, None, None, "a worker was killed", hint)
-            raise StudyError([fault]) from None
+            raise StudyError([Fault(study.name, None, None, str(error), hint)]) from None
         finally:
             pool.shutdown(cancel_futures=True)
 
     return computed
 
 
+class WorkerKilled(Exception):
+    """A process ended, and with it what all of them were at."""
+
+    def __init__(self, indices: Iterable[int]) -> None:
+        one, *more = sorted(indices)
+        at = "the index" if not more else "one of the indices"
+        super().__init__(f"a worker was killed at {at} {', '.join(map(str, (one, *more)))}")
+
+
 def windowed(
     indices: Iterable[int], most: int, submit: Callable[[int], Future[Row]]
 ) -> Iterator[Row]:
     """Keeps so many rows under way, and gives each as it is done."""
-    under_way: set[Future[Row]] = set()
+    under_way: dict[Future[Row], int] = {}
     for index in indices:
-        under_way.add(submit(index))
+        try:
+            under_way[submit(index)] = index
+        except BrokenProcessPool:
+            raise WorkerKilled(under_way.values()) from None
         if len(under_way) >= most:
-            done, under_way = wait(under_way, return_when=FIRST_COMPLETED)
-            yield from (one.result() for one in done)
+            yield from _finished(under_way)
     while under_way:
-        done, under_way = wait(under_way, return_when=FIRST_COMPLETED)
-        yield from (one.result() for one in done)
+        yield from _finished(under_way)
+
+
+def _finished(under_way: dict[Future[Row], int]) -> Iterator[Row]:
+    """Takes what is done, one at least. Rows that are whole come before a process that is not."""
+    done, _ = wait(under_way, return_when=FIRST_COMPLETED)
+    broken = {one for one in done if isinstance(one.exception(), BrokenProcessPool)}
+    for one in done - broken:
+        del under_way[one]
+        yield one.result()
+    if broken:
+        raise WorkerKilled(under_way.values())
 
 
 _STUDY: list[Study] = []
@@ -111,6 +131,7 @@ def run(
     Parquet. What an earlier run has left of them is not computed again, but for rows that could not
     be read then. Answers how many rows were computed.
     """
+    study.check_is_named()
     chosen = range(study.count) if indices is None else indices
     if chosen.step != 1 or chosen.start < 0 or chosen.stop > study.count:
         raise ValueError(f"indices of this study are a range from 0 to {study.count}")

@@ -12,9 +12,12 @@ from .cases import Row
 from .here import Runner
 from .study import Study
 
-
 WAIT_S = 10.0
 """Seconds in which the head of a cluster answers, at most."""
+
+
+MOST_RETRIES = 3
+"""How often a row is computed again whose worker was killed."""
 
 
 def ray_package() -> Any:
@@ -70,7 +73,7 @@ def _unreachable(address: str | None, error: Exception) -> Error:
 def on_ray(address: str | None = None, *, tasks_a_core: int = 2) -> Runner:
     """Computes rows on Ray. ``address`` is that of a cluster (``"auto"`` for the one that runs
     here); without one Ray starts on this machine. Rows of a worker or a node that dies are computed
-    again elsewhere.
+    again elsewhere, at most :data:`MOST_RETRIES` times: what kills every worker has no answer.
     """
 
     def computed(study: Study, indices: Iterable[int]) -> Iterator[Row]:
@@ -81,28 +84,38 @@ def on_ray(address: str | None = None, *, tasks_a_core: int = 2) -> Runner:
 
 
 def _rows(ray: Any, study: Study, indices: Iterable[int], tasks_a_core: int) -> Iterator[Row]:
-    # a row depends on its index alone: it may be computed again, as often as workers die
-    task = ray.remote(num_cpus=1, max_retries=-1)(_row)
+    # a row depends on its index alone, and may be computed again; but one that kills its worker, as
+    # where memory is short, would kill all that come after
+    task = ray.remote(num_cpus=1, max_retries=MOST_RETRIES)(_row)
     # named here, so that workers are held to it
     assert study.key
     shared = ray.put(study)
     most = max(1, int(ray.cluster_resources().get("CPU", 1)) * tasks_a_core)
-    under_way: list[Any] = []
+    under_way: dict[Any, int] = {}
     for index in indices:
-        under_way.append(task.remote(shared, index))
+        under_way[task.remote(shared, index)] = index
         if len(under_way) >= most:
-            done, under_way = ray.wait(under_way)
-            yield from _got(ray, study, done)
+            yield from _finished(ray, study, under_way)
     while under_way:
-        done, under_way = ray.wait(under_way)
-        yield from _got(ray, study, done)
+        yield from _finished(ray, study, under_way)
 
 
-def _got(ray: Any, study: Study, done: list[Any]) -> list[Row]:
-    """Rows that are done. What denavit raised in a worker is raised here, as it was."""
+def _finished(ray: Any, study: Study, under_way: dict[Any, int]) -> Iterator[Row]:
+    """Takes what is done, one at least."""
+    done, _ = ray.wait(list(under_way))
+    for one in done:
+        yield _got(ray, study, under_way.pop(one), one)
+
+
+def _got(ray: Any, study: Study, index: int, done: Any) -> Row:
+    """A row that is done. What denavit raised in a worker is raised here, as it was."""
+    said = ray.exceptions
+    killed = (
+        said.WorkerCrashedError, said.NodeDiedError, said.OutOfMemoryError, said.ObjectLostError,
+    )  # fmt: skip
     try:
-        rows: list[Row] = ray.get(done)
-    except ray.exceptions.RayTaskError as error:
+        row: Row = ray.get(done)
+    except said.RayTaskError as error:
         if isinstance(error.cause, Error):
             raise error.cause from None
         # a study that cannot be unpacked in a worker is a fault of Ray's system, with this text
@@ -112,7 +125,11 @@ def _got(ray: Any, study: Study, done: list[Any]) -> list[Row]:
             hint = "its module has to be on PYTHONPATH of every node before `ray start`"
             raise Error([Fault(study.name, None, None, cause, hint)]) from None
         raise
-    return rows
+    except killed as error:
+        cause = f"index {index}: its worker was killed {MOST_RETRIES + 1} times"
+        hint = f"perhaps memory runs out ({type(error).__name__}); the next run computes it again"
+        return study.silent(index, str(Fault(study.name, None, None, cause, hint)))
+    return row
 
 
 def _row(study: Study, index: int) -> Row:

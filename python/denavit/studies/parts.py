@@ -245,7 +245,7 @@ def extent(path: str | Path) -> tuple[int, int, int | None]:
 
 
 def again(path: str | Path) -> list[int]:
-    """Indices of a part whose rows could not be read, and are computed again at its next run."""
+    """Indices of a part whose rows could not be read or computed: its next run computes them."""
     return sorted(_said(Path(path)).again)
 
 
@@ -290,8 +290,8 @@ def merge(paths: Iterable[str | Path], out: str | Path) -> int:
             raise wrong(path, f"is of another study than {parts[0][3]}")
     for path, one in all_said:
         if one.again:
-            hint = "run it again: what is read by now is computed"
-            raise wrong(path, f"has {len(one.again)} rows that could not be read", hint)
+            hint = "run it again: they are computed then"
+            raise wrong(path, f"has {len(one.again)} rows that could not be read or computed", hint)
     if any(path.resolve() == Path(out).resolve() for *_, path in parts):
         raise wrong(out, "is one of the parts", "name another file")
     parts.sort(key=lambda part: part[1:3])

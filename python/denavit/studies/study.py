@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import inspect
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,7 +13,7 @@ from typing import Any
 from .._denavit import __version__
 from ..errors import Error, Fault, _argument
 from .cases import AGAIN, Case, Function, PassingError, Row, columns_of, plain
-from .content import build, digest, digest_of_path
+from .content import UnnamedError, build, digest, digest_of_path, of_function
 
 FORMAT = "denavit-study/1"
 
@@ -57,18 +56,19 @@ class Study:
 
     @cached_property
     def content(self) -> dict[str, str]:
-        """What the rows depend on, by name: the function (its own text, not that of what it calls),
-        inputs, files, options, seed, and the build of this package. How many indices there are is
-        no part of it, so that a study may be extended.
+        """What the rows depend on, by name: the function (its own text with its defaults and the
+        values it closes over, not the text of what it calls), inputs, files, options, seed, and the
+        build of this package. How many indices there are is no part of it, so that a study may be
+        extended.
         """
         try:
-            text = inspect.getsource(self.function)
-        except (OSError, TypeError):
-            text = ""  # it was typed in
+            text = of_function(self.function)
+        except UnnamedError:
+            text = ""  # its rows are not kept
         columns = {name: str(kind) for name, kind in columns_of(self.function).items()}
         said = {
             "the format of studies": FORMAT,
-            f"the function {self.place}": digest(text.encode()),
+            f"the function {self.place}": text,
             "its columns": _text(columns),
             "the seed": str(self.seed),
         }
@@ -78,6 +78,15 @@ class Study:
             # of as many as a fleet has robots, one name is enough
             inputs = {"an input": digest(_text(inputs).encode())}
         return said | inputs | self._surroundings()
+
+    def check_is_named(self) -> None:
+        """Refuses a function that cannot be told from another one: its rows cannot be kept."""
+        try:
+            of_function(self.function)
+        except UnnamedError as error:
+            hint = "write it into a module; `denavit.studies.computed` keeps nothing"
+            cause = f"rows of {self.place} cannot be kept: {error}"
+            raise Error([Fault(self.name, None, None, cause, hint)]) from None
 
     def _surroundings(self) -> dict[str, str]:
         """What is not carried to workers, as it is where this is asked."""
@@ -103,11 +112,20 @@ class Study:
             given, failure, more = {}, str(error), {AGAIN: True}
         except Error as error:
             given, failure = {}, str(error)
+        except SystemExit as error:
+            cause = f"index {index}: {self.place} ends its process: SystemExit({error.code!r})"
+            hint = "a function answers its row, or raises an exception"
+            raise Error([Fault(self.name, None, None, cause, hint)]) from None
         unknown = given.keys() - columns.keys()
         if unknown:
             raise TypeError(f"{self.place} has no column {', '.join(sorted(unknown))}")
         values = {name: plain(kind, given.get(name)) for name, kind in columns.items()}
         return {"index": index, **values, "failure": failure, **more}
+
+    def silent(self, index: int, failure: str) -> Row:
+        """The row of an index that could not be computed now."""
+        nothing = dict.fromkeys(columns_of(self.function))
+        return {"index": index, **nothing, "failure": failure, AGAIN: True}
 
     def _check(self) -> None:
         """Sees to it that this process has the build and the files that the study is named by: rows
@@ -196,7 +214,12 @@ def found(place: str) -> Function:
     module, colon, name = place.partition(":")
     if not (module and colon and name):
         raise ValueError(f"{place!r} is not module:name")
-    value: Any = importlib.import_module(module)
+    try:
+        value: Any = importlib.import_module(module)
+    except (Exception, SystemExit) as error:
+        # whatever stands in it runs now
+        cause = f"the module {module} cannot be imported: {type(error).__name__}: {error}"
+        raise ImportError(cause) from error
     for part in name.split("."):
         value = getattr(value, part)
     if not callable(value):

@@ -1,4 +1,4 @@
-"""What a fleet is given: copies of logs, uploads that broke off, maps and folders that do not fit."""
+"""What a fleet is given: copies of logs, broken uploads, maps and folders that do not fit."""
 
 import json
 import shutil

@@ -14,6 +14,7 @@ from .._progress import ProgressLine
 from ..studies.here import Runner, in_process, in_processes
 from ..studies.on_ray import connected, on_ray, ray_package
 from .engine import Fleet, Options, Outcome
+from .everyone import shifts
 from .mapping import check_columns
 from .sources import FleetError, fault
 
@@ -133,10 +134,13 @@ def _said(fleet: Fleet) -> int:
         print(f"  {one.robot}: {_named(one)}")
     for one in earlier:
         print(f"  {one.robot}: {_named(one)}, alarm of {one.night}, no answer since")
+    moved = [each for each in shifts(fleet) if each.night == night]
+    for each in moved:
+        print(f"  {each}: common, and so an alarm of none of them")
     for one in silent + gone:
         first = (one.reason or "").splitlines()[0]
         print(f"  {first}" if first.startswith(f"{one.robot}:") else f"  {one.robot}: {first}")
-    return 1 if alarms or silent or gone else 0
+    return 1 if alarms or silent or gone or moved else 0
 
 
 def _named(one: Outcome) -> str:

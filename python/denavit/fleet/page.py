@@ -10,6 +10,7 @@ from urllib.parse import quote
 
 from .drift import Drift
 from .engine import Fleet, Outcome
+from .everyone import Shift, shifts
 from .sparkline import Point, sparkline
 from .tables import report_name
 
@@ -66,7 +67,9 @@ def page(fleet: Fleet, drifts: Sequence[Drift]) -> str:
     last = fleet.nights[-1]
     style = base64.b64encode(hashlib.sha256(STYLE.encode()).digest()).decode()
     allowed = f"default-src 'none'; style-src 'sha256-{style}'"
-    kind = "verdict bad" if any(one.standing or one.last.reason for one in robots) else "verdict"
+    moved = shifts(fleet)
+    is_bad = any(one.standing or one.last.reason for one in robots)
+    kind = "verdict bad" if is_bad or any(one.night == last for one in moved) else "verdict"
     among = _count(len(robots), "robot")
     said = f"{escape(last)}: {_said(robots, among)}"
     shown = robots[:MOST_WITH_CURVES]
@@ -80,7 +83,7 @@ def page(fleet: Fleet, drifts: Sequence[Drift]) -> str:
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>Fleet: {among}</title><style>{STYLE}</style></head><body><main>
 <h1>Fleet: {among}, {_count(len(fleet.nights), "night")}</h1>
-<p class="{kind}">{said}.</p>
+<p class="{kind}">{said}.</p>{_moved(moved)}
 <p>Among the alarms of a night, a share of at most {100 * fleet.rate:g} % is expected to be false.
 That is the false discovery rate over the whole fleet. A robot is judged by its own earlier nights;
 errors have the scatter from night to night.</p>
@@ -92,6 +95,15 @@ Red is changed. Values are in SI units; a residual is the logarithm of its share
 <h2>All robots</h2>{_list(robots)}
 </main></body></html>
 """
+
+
+def _moved(found: Sequence[Shift]) -> str:
+    """What most robots did alike, night by night."""
+    if not found:
+        return ""
+    lines = "".join(f"<li>{escape(one.night)}: {escape(str(one))}</li>" for one in found)
+    said = "Most robots moved alike. That is taken off as common, and is an alarm of none of them:"
+    return f"<p>{said}</p><ul>{lines}</ul>"
 
 
 def _said(robots: Sequence[_Robot], among: str) -> str:

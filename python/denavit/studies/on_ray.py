@@ -40,7 +40,10 @@ def connected(address: str | None = None) -> Iterator[None]:
         try:
             # without an address Ray would take whatever cluster runs here, of others perhaps
             chosen = "local" if address is None else address
-            ray.init(address=chosen, include_dashboard=False, log_to_driver=False)
+            # Ray counts no retries where memory runs out, and would go on without an end; a cluster
+            # that runs has its own setting, RAY_task_oom_retries of its head
+            more = {"_system_config": {"task_oom_retries": MOST_RETRIES}} if address is None else {}
+            ray.init(address=chosen, include_dashboard=False, log_to_driver=False, **more)
         except (ConnectionError, RuntimeError, ValueError) as error:
             raise _unreachable(address, error) from None
     try:

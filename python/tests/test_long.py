@@ -9,7 +9,7 @@ import denavit
 from denavit._words import by_keyword
 from denavit.errors import Error
 from denavit.fleet import example
-from denavit.long import identify_long
+from denavit.long import _Table, identify_long
 from denavit.studies.here import in_processes
 
 pyarrow = pytest.importorskip("pyarrow")
@@ -280,3 +280,13 @@ def test_remarks_name_keywords():
     expected = 'lower (`filter_hz`, `method="iv"`, `seed=3`); `accept_cut`'
     assert by_keyword(said) == expected
     assert by_keyword("`a.b` `options` options.x") == "`a.b` `options` options.x"
+
+
+def test_half_floats_are_numbers_and_other_times_are_named(tmp_path):
+    half = pyarrow.array(np.arange(2000.0).astype(np.float16))
+    texts = pyarrow.array([str(at) for at in range(2000)])
+    path = tmp_path / "half.parquet"
+    parquet.write_table(pyarrow.table({"t": texts, "q_elbow": half}), path)
+    assert _Table(path).read(1, 3)["q_elbow"].tolist() == [1.0, 2.0]
+    with pytest.raises(Error, match="no column of numbers `t`: it is of type string"):
+        identify_long(example.NOMINAL, path, head=1000)

@@ -4,7 +4,8 @@ use crate::failure::{Failure, Wrong};
 use denavit::plants::Samples;
 use numpy::PyUntypedArrayMethods;
 use numpy::ndarray::{ArrayView2, Axis};
-use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
+use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray};
+use pyo3::PyTypeInfo;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyTuple;
@@ -22,10 +23,13 @@ static AS_DOUBLES: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
 impl<'py> Given<'py> {
     /// Reads an argument: an array of doubles as it is; lists, integers and the like as new arrays.
     pub(crate) fn new(name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Self> {
-        if let Ok(array) = value.cast::<PyArrayDyn<f64>>() {
+        let py = value.py();
+        // other kinds of arrays, as masked ones, say more than their numbers
+        if value.get_type().is(PyUntypedArray::type_object(py))
+            && let Ok(array) = value.cast::<PyArrayDyn<f64>>()
+        {
             return Self::read(name, array);
         }
-        let py = value.py();
         let make = AS_DOUBLES.get_or_try_init(py, || {
             Ok::<_, PyErr>(py.import("denavit._arrays")?.getattr("as_doubles")?.unbind())
         })?;

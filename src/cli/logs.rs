@@ -45,7 +45,5 @@ fn mcap(Log { header, columns, values }: &Log) -> Result<Vec<u8>, String> {
 
 #[cfg(not(feature = "mcap"))]
 fn mcap(_: &Log) -> Result<Vec<u8>, String> {
-    Err("this build does not write MCAP: `cargo install --path . --features mcap` in the sources \
-         of denavit builds one that does"
-        .to_owned())
+    Err("`cargo install --path . --features mcap` makes a build that writes MCAP".to_owned())
 }

@@ -148,7 +148,7 @@ fn damaged_tables_are_read_or_refused() {
             let read = opened(&bytes, &Opening::default()).and_then(|log| {
                 let places: Vec<usize> =
                     (0..log.columns.len()).filter(|at| log.columns[*at].name != "note").collect();
-                log.read(&places, &[])
+                log.read(&places, &[]).map_err(denavit_logs::Error::into_faults)
             });
             match read {
                 Ok(_) => right += 1,

@@ -4,7 +4,8 @@
 
 FOLDER/urdf/arm.urdf has a mesh of 180 000 triangles, which is more than a page draws, one of text,
 an OBJ, and solids. broken.urdf has one that is cut, one of COLLADA, and one outside of the folder.
-FOLDER/leg.xml has the solids of an MJCF.
+FOLDER/leg.xml has the solids of an MJCF, FOLDER/boom.xml a boom that is much longer than all
+distances between its frames.
 """
 
 import json
@@ -36,6 +37,11 @@ ARM = """<robot name="arm">
   <joint name="flange" type="fixed"><origin xyz="0.3 0 0"/>
     <parent link="fore"/><child link="tool"/></joint>
 </robot>
+"""
+
+
+BOOM = """<mujoco model="boom"><worldbody><body name="boom"><joint name="slew" axis="0 0 1"
+  range="-1 1"/><geom type="box" pos="3 0 0" size="3 0.1 0.1"/></body></worldbody></mujoco>
 """
 
 
@@ -123,6 +129,7 @@ def main():
     (urdf / "broken.urdf").write_text(
         ARM.format(upper="cut.stl", fore="../outside.stl", tool="tool.dae"))
     (folder / "leg.xml").write_text(LEG)
+    (folder / "boom.xml").write_text(BOOM)
     (folder / "swing.json").write_text(json.dumps(scenario()))
 
 

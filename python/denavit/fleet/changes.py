@@ -9,7 +9,7 @@ A robot has one p-value, and the false discovery rate is that of robots.
 from __future__ import annotations
 
 import math
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -117,21 +117,21 @@ def judged(
         )
         for group, name in keys
     ]
-    scatter = _scatter(dict(zip(keys, moves)))
-    changes: dict[str, list[Change]] = {robot: [] for robot in robots}
-    for group in sorted({group for group, _ in keys}):
-        own = {key: move for key, move in zip(keys, moves) if key[0] == group}
-        members = sorted({robot for key in own for robot in tested[key]})
-        for robot in members:
-            fits = scatter
-            if len(members) <= FEWEST_OTHERS:
-                places = {key: tested[key].index(robot) for key in own if robot in tested[key]}
-                fits = _scatter(own, places)
-            for key, move in own.items():
-                if robot in tested[key]:
-                    at = tested[key].index(robot)
-                    changes[robot].append(move.change(key[1], at, fits[key]))
-    common = {key: move.common for key, move in zip(keys, moves)}
+    by_key = dict(zip(keys, moves))
+    scatter = _scatter(by_key)
+    # where a robot stands among those of a parameter
+    places: dict[str, dict[tuple[str, str], int]] = {robot: {} for robot in robots}
+    for key in keys:
+        for at, robot in enumerate(tested[key]):
+            places[robot][key] = at
+    groups = Counter(histories[robot].group for robot in robots)
+    changes: dict[str, list[Change]] = {}
+    for robot, own in places.items():
+        fits = scatter
+        if groups[histories[robot].group] <= FEWEST_OTHERS:
+            fits = _scatter({key: by_key[key] for key in own}, own)
+        changes[robot] = [by_key[key].change(key[1], at, fits[key]) for key, at in own.items()]
+    common = {key: move.common for key, move in by_key.items()}
     return Verdicts(_alarms(robots, changes, rate), common, scatter)
 
 

@@ -12,6 +12,7 @@
 //! tests of the package.
 
 use super::{Directory, run_in};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -116,6 +117,7 @@ fn follow(name: &str) {
         fs::write(&path, updated).expect("written");
     }
     compare_pictures(&directory, &page);
+    evidence_leads_to_what_was_found(&directory);
 }
 
 fn run_lines(directory: &Directory, lines: &str, code: i32) -> String {
@@ -129,6 +131,22 @@ fn run_lines(directory: &Directory, lines: &str, code: i32) -> String {
         printed += &run.stderr;
     }
     printed
+}
+
+/// The page of a diagnosis says what became of an effect that a round took, where it is not there
+/// in the end.
+fn evidence_leads_to_what_was_found(directory: &Directory) {
+    let found = |file: &str| fs::read_to_string(directory.path.join("found").join(file)).ok();
+    let Some((json, report)) = found("diagnosis.json").zip(found("report.html")) else { return };
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    let names = |list: &str, is_one: fn(&serde_json::Value) -> bool| -> BTreeSet<String> {
+        let all = json[list].as_array().expect("a list").iter().filter(|one| is_one(one));
+        all.map(|one| format!("{} {}", one["effect"], one["at"])).collect()
+    };
+    let taken = names("rounds", |round| round["is_taken"] == true);
+    let is_exchanged = !taken.is_subset(&names("effects", |_| true));
+    let is_told = report.contains("After each round effects are exchanged");
+    assert_eq!(is_told, is_exchanged);
 }
 
 /// Pictures that the commands drew. That of a diagnosis stands on the page of its answer.

@@ -59,6 +59,8 @@ pub struct FoundEffect {
     /// By how much more likely held-out logs are with it, as those that were fitted have it: a log
     /// of odds.
     pub log_predicted: f64,
+    /// By how much of itself it changes in the course of logs, where they show that it does.
+    pub change_in_time: Option<f64>,
     /// Whether it fits: else it is only the nearest of the catalogue to something without a name.
     pub is_named: bool,
     /// Effects that would do as well in its place.
@@ -110,6 +112,7 @@ pub(super) fn found_effects(
             size: search.size(all, place),
             share: (gap(&reopened) - gap(after)) / whole,
             log_predicted: predicted - setting.log_predicted(&judging, &reopened),
+            change_in_time: search.change_in_time(all, place),
             is_named: true,
             parameters: values(setting, all, after, place),
             alternatives: alternatives(found, place),

@@ -14,6 +14,7 @@ mod blocks;
 mod candidate;
 mod catalogue;
 mod columns;
+mod course;
 mod curve;
 mod data;
 mod diagnosis;

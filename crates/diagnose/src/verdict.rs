@@ -52,7 +52,12 @@ pub(super) fn judge(
     let is_alike = left_open(diagnosis) <= policy::NOTHING_LIKE;
     for one in &mut diagnosis.effects {
         let left = left_beside(setting, &diagnosis.leftovers, one);
-        one.is_named = is_alike && left.is_none_or(|left| !is_unexplained(left, one.size));
+        let is_law = |left: &Leftover| {
+            let at = setting.data.train.nominal.equation_name(left.equation);
+            is_unexplained(left, one.size) && diagnosis.structures.iter().any(|one| one.at == at)
+        };
+        let is_constant = one.change_in_time.is_none();
+        one.is_named = is_alike && is_constant && left.is_none_or(|left| !is_law(left));
     }
     let (verdict, mut reasons) = said(diagnosis, setting);
     reasons.extend(doubts(diagnosis, setting, found));
@@ -191,6 +196,15 @@ fn doubts(diagnosis: &Diagnosis, setting: &Setting<'_>, found: &Found) -> Vec<St
             "exact alias: {name} does what parameters of the model do in every motion ({}); what \
              is told is that they are off by more than the model states",
             one.exact.join(", ")
+        ));
+    }
+    for one in &diagnosis.effects {
+        let Some(change) = one.change_in_time else { continue };
+        reasons.push(format!(
+            "{} is only near to what is missing: in the course of a log that changes by {:.0} % of \
+             its mean to either side, as the law does not",
+            setting.candidates[one.candidate].name(),
+            100.0 * change
         ));
     }
     for &candidate in &found.dropped {

@@ -116,7 +116,7 @@ impl<'a> Weighing<'a> {
     }
 
     /// Up to which frequency columns count \[Hz\].
-    fn up_to(&self, follows_accelerations: bool) -> f64 {
+    pub(super) fn up_to(&self, follows_accelerations: bool) -> f64 {
         if follows_accelerations { self.driven_hz } else { f64::INFINITY }
     }
 

@@ -118,6 +118,14 @@ pub const LEFT: f64 = 8e-3;
 /// See [`FLAT`].
 pub const LEFT_OF_EXPLAINED: f64 = 0.35;
 
+/// How far an effect is believed to change in the course of a log, as a share of itself, where it
+/// does.
+pub const CHANGE: f64 = 0.5;
+
+/// From this share on it is not the law that it is like: one end of a log has twice what the other
+/// one has. Friction that warms up changes less in logs of a minute.
+pub const CHANGED: f64 = 1.0 / 3.0;
+
 /// The least share of torque that an effect must do at one deviation to be looked at.
 pub const LEAST_FELT: f64 = 1e-7;
 

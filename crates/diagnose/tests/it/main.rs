@@ -2,6 +2,7 @@
 
 mod alias;
 mod columns;
+mod course;
 mod elastic;
 mod held;
 mod laws;

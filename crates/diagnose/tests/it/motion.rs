@@ -17,7 +17,7 @@ pub(super) const SLED: &str = r#"{
   }]
 }"#;
 
-fn motion(phase: f64) -> impl Fn(f64) -> [f64; 3] {
+pub(super) fn motion(phase: f64) -> impl Fn(f64) -> [f64; 3] {
     move |t| {
         let mut all = [0.0; 3];
         for (size, periods) in WAVES {

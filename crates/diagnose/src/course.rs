@@ -1,0 +1,78 @@
+//! Whether an effect is the same in the course of a log.
+//!
+//! A law of the catalogue holds at all times, and those that do not say how they change. Something
+//! else may be like one for a while: a force that fades is like a spring that becomes weak. Each log
+//! gives the effect a column more, what it does times a line in time, from -1 at the first row to 1
+//! at the last. If the data ask for these columns and make them large, the effect is only near to
+//! what is there. That is the test of Chow (1960) for constant parameters, as evidence.
+
+use super::data::RowResponse;
+use super::hypothesis::Hypothesis;
+use super::search::Search;
+use super::state::Taken;
+use denavit_evidence::{Spectrum, Terms, policy};
+
+impl Search<'_> {
+    /// By how much of itself an effect is larger or smaller at the ends of logs than in their
+    /// middle, root of mean square over logs; none where data do not ask for that, or ask for so
+    /// little that friction which warms up does as much.
+    pub(super) fn change_in_time(&self, found: &Hypothesis, place: usize) -> Option<f64> {
+        let candidate = found.parts[place].placed.candidate;
+        let columns = self.weighing.in_time(&Taken { candidate, values: found.values(place) });
+        let count = columns.len();
+        let scaled = |mut column: Spectrum| {
+            column.iter_mut().flatten().for_each(|row| *row *= policy::CHANGE);
+            column
+        };
+        let changing = Terms {
+            columns: columns.into_iter().map(scaled).collect(),
+            lowest: vec![f64::NEG_INFINITY; count],
+            is_curved: vec![false; count],
+            believed: vec![0.0; count],
+            ..Terms::default()
+        };
+        let own = found.parts.iter().map(|part| &part.terms);
+        let with = |terms: &[&Terms]| {
+            let start = Some(found.weighed.variances.as_slice());
+            self.weighing.base.weigh(terms, start, policy::ROUNDS[1])
+        };
+        let terms: Vec<&Terms> = own.chain([&changing]).collect();
+        let (constant, changes) = (with(&terms[..terms.len() - 1]), with(&terms));
+        let odds = changes.log_evidence - constant.log_evidence + policy::UNCOMMON;
+        let factors = &changes.factors[changes.factors.len() - count..];
+        let squares: f64 = factors.iter().map(|factor| (policy::CHANGE * factor).powi(2)).sum();
+        let change = (squares / count.max(1) as f64).sqrt();
+        (odds > policy::NAMED && change > policy::CHANGED).then_some(change)
+    }
+}
+
+impl super::weighing::Weighing<'_> {
+    /// What an effect does, times a line in time: for each log a spectrum.
+    fn in_time(&self, taken: &Taken) -> Vec<Spectrum> {
+        let mut responses = self.responses(taken);
+        let logs: Vec<usize> = self.sets.iter().map(|data| data.signals.len()).collect();
+        let all: usize = logs.iter().sum();
+        let mut before = 0;
+        for (response, logs) in responses.iter_mut().zip(&logs) {
+            let RowResponse { stretches, torque, gradient, .. } = response;
+            let of = |(stretch, torque): (&super::data::Stretch, &Vec<f64>)| {
+                let own = before + stretch.log.0;
+                let of_log = |log: usize| match log == own {
+                    true => along(torque),
+                    false => vec![0.0; torque.len()],
+                };
+                (0..all).map(of_log).collect()
+            };
+            *gradient = stretches.iter().zip(torque.iter()).map(of).collect();
+            before += logs;
+        }
+        let follows = self.candidates[taken.candidate].law.follows_accelerations();
+        self.spectra.of_response(&self.sets, &responses, self.up_to(follows)).1
+    }
+}
+
+/// Rows times a line from -1 at the first to 1 at the last.
+fn along(rows: &[f64]) -> Vec<f64> {
+    let last = rows.len().saturating_sub(1).max(1) as f64;
+    rows.iter().enumerate().map(|(k, row)| row * (2.0 * k as f64 / last - 1.0)).collect()
+}

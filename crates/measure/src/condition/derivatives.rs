@@ -6,12 +6,12 @@
 
 use super::{Conditioned, STENCIL, acceleration, rate};
 use crate::JointIndex;
-use crate::error::ConditionError;
+use crate::error::Cause;
 use crate::policy::derivatives::{DELAY, FACTOR, NOISE};
 
 impl Conditioned {
     /// Refuses logged rates and accelerations that are not derivatives of the positions.
-    pub(super) fn compare_rates(&self, names: &[String]) -> Result<(), ConditionError> {
+    pub(super) fn compare_rates(&self, names: &[String]) -> Result<(), Cause> {
         let Some(rates) = &self.rates else { return Ok(()) };
         let gains = self.filter_gains();
         for (joint, name) in names.iter().enumerate().filter(|(at, _)| !self.resting[*at]) {
@@ -22,7 +22,7 @@ impl Conditioned {
                     self.compared(JointIndex(joint), order, column, noise)
                 {
                     let column = format!("{prefix}_{name}");
-                    return Err(ConditionError::NotTheDerivative { column, factor, late_s });
+                    return Err(Cause::NotTheDerivative { column, factor, late_s });
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Motion that repeats: its period, the mean of its laps, and the noise that laps show.
 
-use crate::error::{ConditionError, Error};
+use crate::error::{Cause, Error};
 use crate::policy::laps::{COMPARED, DIGITS, FEWEST, LEFT_BY_LAP, MOVES, REPEATS, SETTLED};
 use std::ops::Range;
 
@@ -129,7 +129,7 @@ impl Laps {
         period_s: f64,
         step_s: f64,
         span: Range<usize>,
-    ) -> Result<Self, ConditionError> {
+    ) -> Result<Self, Cause> {
         let period = period_s / step_s;
         let laps = Self::of_period(period, step_s, span.clone())?;
         let moving = moving(positions, span.clone());
@@ -141,24 +141,24 @@ impl Laps {
         let misfit = compared.misfit(period);
         match misfit < REPEATS {
             true if away.abs() >= DIGITS => {
-                Err(ConditionError::OtherPeriod { period_s, longer: away > 0.0 })
+                Err(Cause::OtherPeriod { period_s, longer: away > 0.0 })
             }
             true => Self::of_period(period, step_s, span),
-            false => Err(ConditionError::NotRepeated { period_s, misfit }),
+            false => Err(Cause::NotRepeated { period_s, misfit }),
         }
     }
 
     /// Laps of a period in samples from sample `start` on.
-    fn of_period(period: f64, step_s: f64, span: Range<usize>) -> Result<Self, ConditionError> {
+    fn of_period(period: f64, step_s: f64, span: Range<usize>) -> Result<Self, Cause> {
         let period_s = period * step_s;
         if !(period >= FEWEST && period.is_finite()) {
-            return Err(ConditionError::ShortPeriod { period_s, step_s });
+            return Err(Cause::ShortPeriod { period_s, step_s });
         }
         match (span.len() as f64 / period + 1e-9).floor() as usize {
             count @ 2.. => {
                 Ok(Self { start: span.start, period, samples: period.round() as usize, count })
             }
-            _ => Err(ConditionError::OneLap { period_s }),
+            _ => Err(Cause::OneLap { period_s }),
         }
     }
 
@@ -169,7 +169,7 @@ impl Laps {
         let stride = samples.div_ceil(SEARCHED).max(1);
         let moving = moving(positions, span.clone());
         if moving.is_empty() {
-            return Err(ConditionError::NoPeriod.into());
+            return Err(Cause::NoPeriod.into());
         }
         let compared = Compared::new(&moving, span.clone(), stride);
         // From the first lag at which the motion has become another one.
@@ -185,7 +185,7 @@ impl Laps {
                 break;
             }
         }
-        let (near, _) = best.ok_or(ConditionError::NoPeriod)?;
+        let (near, _) = best.ok_or(Cause::NoPeriod)?;
         let nearby = near.saturating_sub(2 * stride).max(1)..=near + 2 * stride;
         let lag = nearby
             .filter(|&lag| 2 * lag <= samples)
@@ -302,7 +302,7 @@ mod tests {
         let given = |period_s: f64| Laps::given(&positions, period_s, 1e-3, 20..2680);
         assert_eq!(given(0.64).map(|laps| laps.count), Ok(4));
         for wrong in [0.6, 0.32, 0.7] {
-            let refused = matches!(given(wrong), Err(ConditionError::NotRepeated { .. }));
+            let refused = matches!(given(wrong), Err(Cause::NotRepeated { .. }));
             assert!(refused, "{wrong}: {:?}", given(wrong));
         }
     }
@@ -313,7 +313,7 @@ mod tests {
         let positions = [two_harmonics(640.0, 2700)];
         let given = |period_s: f64| Laps::given(&positions, period_s, 1e-3, 20..2680);
         for (wrong, is_longer) in [(0.638, true), (0.6425, false), (0.644, false)] {
-            let expected = ConditionError::OtherPeriod { period_s: wrong, longer: is_longer };
+            let expected = Cause::OtherPeriod { period_s: wrong, longer: is_longer };
             assert_eq!(given(wrong), Err(expected));
         }
         assert!(given(0.6405).is_ok());
@@ -322,7 +322,7 @@ mod tests {
     #[test]
     fn what_never_repeats_has_no_period() {
         let slope: Vec<f64> = (0..1000).map(f64::from).collect();
-        assert_eq!(Laps::find(&[slope], 1e-3, 0..1000), Err(ConditionError::NoPeriod.into()));
+        assert_eq!(Laps::find(&[slope], 1e-3, 0..1000), Err(Cause::NoPeriod.into()));
     }
 
     #[test]

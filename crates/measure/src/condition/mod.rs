@@ -4,8 +4,6 @@
 //! one zero-phase low-pass filter, which makes derivatives possible; the torques and the columns
 //! of Y then pass the same decimator, which is linear and so keeps the equation.
 
-mod butterworth;
-mod decimate;
 mod derivatives;
 mod laps;
 mod noise;
@@ -14,15 +12,14 @@ mod pieces;
 mod reversals;
 mod stretch;
 
-pub use butterworth::Butterworth;
-pub use decimate::Decimator;
+pub use denavit_numerics::{Butterworth, Decimator};
 pub use laps::Laps;
 pub use noise::Encoder;
 pub use pieces::Piece;
 pub use stretch::{Stretch, Stretches};
 
 use super::log::{JointSignals, MeasuredLog};
-use crate::error::{ConditionError, Error};
+use crate::error::{Cause, Error};
 use crate::{JointIndex, SampleIndex};
 use std::ops::Range;
 
@@ -149,7 +146,7 @@ impl Conditioned {
                 }
             }
             if logged {
-                let no_rates = || ConditionError::NoRates(name.clone());
+                let no_rates = || Cause::NoRates(name.clone());
                 for (column, all) in [qd, qdd].into_iter().zip(&mut rates) {
                     let mut column = column.ok_or_else(no_rates)?;
                     if let Some(filter) = &filter {
@@ -165,7 +162,7 @@ impl Conditioned {
         found.filter = filter;
         found.rest();
         if !found.resting.contains(&false) {
-            return Err(ConditionError::NothingMoves.into());
+            return Err(Cause::NothingMoves.into());
         }
         found.compare_rates(names)?;
         found.average(how.averaging)?;
@@ -336,11 +333,11 @@ impl Conditioned {
     }
 }
 
-fn lawful(filter: Filter, step_s: f64) -> Result<Butterworth, ConditionError> {
+fn lawful(filter: Filter, step_s: f64) -> Result<Butterworth, Cause> {
     let Filter { order, cutoff_hz } = filter;
     let nyquist_hz = 0.5 / step_s;
     let found = Butterworth::new(order, cutoff_hz, step_s);
-    found.ok_or(ConditionError::Cutoff { cutoff_hz, nyquist_hz })
+    found.ok_or(Cause::Cutoff { cutoff_hz, nyquist_hz })
 }
 
 /// The first difference of sixth order, per sample.

@@ -1,6 +1,6 @@
 //! Which column of a foreign log is which of ours.
 
-use crate::error::{Error, MappingError};
+use crate::error::{Cause, Error};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -66,7 +66,7 @@ struct Full {
 impl ColumnMapping {
     /// Reads a mapping from JSON. `file` is its name, for messages alone.
     pub fn from_json(file: &str, source: &[u8]) -> Result<Self, Error> {
-        let error = |at, cause| Error::from(MappingError { file: file.to_owned(), at, cause });
+        let error = |at, cause| Error::from(Cause::Mapping { file: file.to_owned(), at, cause });
         let raw: BTreeMap<String, Option<Entry>> =
             serde_json::from_slice(source).map_err(|problem| {
                 let text = problem.to_string();

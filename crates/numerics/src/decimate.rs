@@ -53,7 +53,7 @@ impl Decimator {
     }
 
     /// Filters without leaving samples out: entry k of `output` is about entry `reach + k`.
-    pub(super) fn smooth(&self, input: &[f64], output: &mut [f64]) {
+    pub fn smooth(&self, input: &[f64], output: &mut [f64]) {
         for (k, out) in output.iter_mut().enumerate() {
             *out = self.about(input, self.reach() + k);
         }

@@ -2,8 +2,9 @@
 
 use super::law::Law;
 use crate::policy::candidate::{LIMITS, PLACES};
-use denavit_codegen::effect::Occurrence;
+use denavit_codegen::effect::{Effect, EffectSite, Occurrence};
 use denavit_evidence::policy;
+use denavit_identify::NewPlace;
 use denavit_measure::JointIndex;
 use denavit_plants::effect::LawParameter;
 use std::f64::consts::TAU;
@@ -30,6 +31,16 @@ impl Candidate {
     /// How it is written: `stribeck at knee`.
     pub fn name(&self) -> String {
         format!("{} at {}", self.effect, self.at)
+    }
+
+    /// Its place in the file of a model, by the definitions of effects.
+    pub fn place(&self, effects: &[Effect]) -> NewPlace<'_> {
+        let known = effects.iter().find(|effect| effect.name == self.effect);
+        match (known.map(|effect| effect.at), self.at.split_once(" with ")) {
+            (Some(EffectSite::Model), _) => NewPlace::Model,
+            (_, Some((joint, second))) => NewPlace::Pair(joint, second),
+            _ => NewPlace::Link(&self.at),
+        }
     }
 }
 

@@ -27,7 +27,7 @@ pub struct Curve {
 pub(super) fn curves(data: &Data<'_>, [as_given, before, after]: [&[f64]; 3]) -> Vec<Curve> {
     let of_stretch = |stretch: &super::Stretch| {
         let signals = &data.signals[stretch.log.0];
-        let rows = stretch.first..stretch.first + stretch.rows;
+        let rows = stretch.range();
         Curve {
             file: signals.file.clone(),
             at: data.nominal.equation_name(stretch.equation),

@@ -1,7 +1,7 @@
 //! Logs with the nominal model's rows: all that is asked of them, weighted and stacked.
 
 use super::known::weights;
-use super::law::{Motion, Response, derivative};
+use super::law::{Law, Motion, derivative};
 use super::nominal::{Nominal, Phi};
 use super::rows::{LogRows, PerJoint, behind_springs, torques};
 use super::signals::Signals;
@@ -10,6 +10,7 @@ pub(super) use crate::policy::data::SPRING_ZERO;
 use denavit_evidence::policy;
 use denavit_measure::{JointIndex, LogIndex};
 use denavit_plants::effect::Drive;
+use std::ops::Range;
 
 /// A stretch of rows: those of one equation in one log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +25,13 @@ pub struct Stretch {
     pub first: usize,
     /// Their number.
     pub rows: usize,
+}
+
+impl Stretch {
+    /// Its rows among all.
+    pub fn range(&self) -> Range<usize> {
+        self.first..self.first + self.rows
+    }
 }
 
 /// Logs with the columns of everything that the nominal model is not sure of.
@@ -180,7 +188,7 @@ impl<'a> Data<'a> {
                 let (_, own) = all.iter().find(|(joint, _)| *joint == stretch.joint)?;
                 Some(signals.rows_of(own))
             };
-            let rows = stretch.first..stretch.first + stretch.rows;
+            let rows = stretch.range();
             if let Some(more) = more(given) {
                 self.residual[rows.clone()].iter_mut().zip(more).for_each(|(row, m)| *row -= m);
             }
@@ -194,8 +202,7 @@ impl<'a> Data<'a> {
 
     /// What the rows of a stretch count.
     pub(super) fn weights_of(&self, stretch: usize) -> Vec<f64> {
-        let Stretch { first, rows, .. } = self.stretches[stretch];
-        self.weights[first..first + rows].to_vec()
+        self.weights[self.stretches[stretch].range()].to_vec()
     }
 
     /// Number of rows.
@@ -222,16 +229,20 @@ impl<'a> Data<'a> {
         self.signals.iter().map(|signals| ModelTorques::new(self.nominal, signals, z)).collect()
     }
 
-    /// What a response to the motion of one log is in the rows: of the equations that have rows.
-    pub fn in_rows(&self, log: LogIndex, signals: &Signals, response: &Response) -> RowResponse {
+    /// What a law does to all logs, in the rows: of the equations that have rows.
+    pub fn response(&self, law: &dyn Law, values: &[f64], torques: &[ModelTorques]) -> RowResponse {
         let mut found = RowResponse::default();
-        for (place, &equation) in response.equations.iter().enumerate() {
-            let is_own = |stretch: &&Stretch| stretch.log == log && stretch.equation == equation;
-            let Some(&stretch) = self.stretches.iter().find(is_own) else { continue };
-            let gradient = response.gradient.iter().map(|all| signals.rows_of(&all[place]));
-            found.stretches.push(stretch);
-            found.gradient.push(gradient.collect());
-            found.torque.push(signals.rows_of(&response.torque[place]));
+        for (log, (signals, torques)) in self.signals.iter().zip(torques).enumerate() {
+            let response = law.response(torques.motion(self.nominal, signals), values);
+            for (place, &equation) in response.equations.iter().enumerate() {
+                let is_own =
+                    |stretch: &&Stretch| stretch.log.0 == log && stretch.equation == equation;
+                let Some(&stretch) = self.stretches.iter().find(is_own) else { continue };
+                let gradient = response.gradient.iter().map(|all| signals.rows_of(&all[place]));
+                found.stretches.push(stretch);
+                found.gradient.push(gradient.collect());
+                found.torque.push(signals.rows_of(&response.torque[place]));
+            }
         }
         found
     }
@@ -246,24 +257,14 @@ pub struct RowResponse {
     pub torque: Vec<Vec<f64>>,
     /// For each stretch and parameter the derivative.
     pub gradient: Vec<Vec<Vec<f64>>>,
-    /// For each parameter one over the deviation that the model states: 0 of one that is free,
-    /// infinite of one that is certain.
-    pub stiffness: Vec<f64>,
 }
 
 impl RowResponse {
-    /// Appends the response of another log.
-    pub fn append(&mut self, mut other: Self) {
-        self.stretches.append(&mut other.stretches);
-        self.torque.append(&mut other.torque);
-        self.gradient.append(&mut other.gradient);
-    }
-
     /// Takes the torque away from rows.
     pub fn subtract_from(&self, rows: &mut [f64]) {
         for (stretch, torque) in self.stretches.iter().zip(&self.torque) {
-            let rows = &mut rows[stretch.first..stretch.first + stretch.rows];
-            rows.iter_mut().zip(torque).for_each(|(row, torque)| *row -= torque);
+            let rows = rows[stretch.range()].iter_mut();
+            rows.zip(torque).for_each(|(row, torque)| *row -= torque);
         }
     }
 }

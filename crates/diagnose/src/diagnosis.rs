@@ -8,18 +8,17 @@ use super::data::Data;
 use super::effects_found::{
     FoundEffect, GivenEffect, driven_names, found_effects, given_effects, separate, tell_aliases,
 };
-use super::elastic::SeriesSpring;
-use super::error::Error;
+use super::elastic::Spring;
+use super::error::{Cause, Error};
 use super::excitation::{Visible, visible};
-use super::experiment::ExperimentOptions;
-use super::floor::NoiseFloor;
+use super::floor::{NoiseFloor, floors};
 use super::gap::{Gap, share_closed};
 use super::leftover::{Leftover, leftovers};
 use super::logged::{LoggedMotion, logged};
-use super::nominal::{Nominal, NominalAt, Uncertainty};
+use super::nominal::{Nominal, NominalAt};
 use super::regime::{Where, where_left};
 use super::rounds::Found;
-use super::search::{Search, SearchOptions, Step};
+use super::search::{Search, Step};
 use super::signals::{Filters, Signals};
 use super::simulated::{MotionGap, MotionGaps, Moved};
 use super::state::{Effects, Setting, State, Taken};
@@ -37,7 +36,7 @@ pub struct Request<'a> {
     /// Base parameters of the nominal model and their columns.
     pub model: &'a RegressionModel,
     /// Springs between motors and joints that the logs have both angles of.
-    pub springs: &'a [SeriesSpring],
+    pub springs: &'a [Spring],
     /// Logs to fit.
     pub train: Vec<MeasuredLog>,
     /// Logs to judge with.
@@ -46,16 +45,15 @@ pub struct Request<'a> {
     pub candidates: &'a [Candidate],
     /// What the model has of them, at its values.
     pub given: Vec<Taken>,
-    /// How far numbers of the model may be off that state nothing.
-    pub uncertainty: Uncertainty,
     /// The symbolic regressor of the model, to tell exact aliases; none leaves them untold.
     pub aliases: Option<&'a ExactAliases<'a>>,
-    /// The robot with its limits, for experiments that separate names; none looks for none.
-    pub experiment: Option<(&'a Robot, ExperimentOptions)>,
+    /// The robot with its limits, for experiments that separate names, and the seed of what is drawn
+    /// for them; none looks for none.
+    pub experiment: Option<(&'a Robot, u64)>,
     /// The model as a file, to be moved along the logs; none leaves that gap out.
     pub moved: Option<&'a Moved<'a>>,
-    /// What the search asks for.
-    pub options: SearchOptions,
+    /// Most effects that are added.
+    pub most_effects: usize,
     /// The filters; found from the motion if none are given.
     pub filters: Option<Filters>,
 }
@@ -141,8 +139,7 @@ pub fn diagnose(
     watch: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Diagnosis, Error> {
     Error::check(&request)?;
-    let nominal = Nominal::new(request.model, request.uncertainty)
-        .with_springs(request.springs, request.uncertainty);
+    let nominal = Nominal::new(request.model).with_springs(request.springs);
     let filters = request
         .filters
         .map_or_else(|| filters_of(&[request.train.as_slice(), &request.held_out].concat()), Ok)?;
@@ -150,7 +147,7 @@ pub fn diagnose(
     let logs = Split { train: read(request.train)?, held_out: read(request.held_out)? };
     let nominal = nominal.moving_as(&logs.train);
     let data = logs.map(|signals| Data::new(&nominal, signals));
-    let floors = data.each_ref().map(|data| NoiseFloor::of_logs(&nominal, &data.signals));
+    let floors = data.each_ref().map(|data| floors(&nominal, &data.signals));
     let setting = Setting {
         data: data.each_ref(),
         candidates: request.candidates,
@@ -158,13 +155,13 @@ pub fn diagnose(
         floors: floors.each_ref().map(Vec::as_slice),
     };
     let misread = misread(&data.train, &setting.as_given(&data.train));
-    let options = if misread.is_empty() { request.options } else { SearchOptions::none() };
+    let most = if misread.is_empty() { request.most_effects } else { 0 };
     let sets = Vec::from(setting.data.into_array());
     let own = setting.effects(&setting.given);
     let mut searched = |z: &[f64], begun: &[Placed], may_move: bool| {
         let weighing = Weighing::new(sets.clone(), own, z);
         let watched = &mut |share| watch(&Progress::Evaluated(share));
-        let search = Search::new(weighing, setting.given.len(), options, watched);
+        let search = Search::new(weighing, setting.given.len(), most, watched);
         let watch = &mut |taken: &[usize]| watch(&Progress::Found(taken.to_vec()));
         let found = search.run(begun, may_move, watch);
         (search, found)
@@ -189,10 +186,10 @@ pub fn diagnose(
     if let Some(aliases) = request.aliases {
         tell_aliases(request.candidates, aliases, &mut effects);
     }
-    if let Some((robot, options)) = request.experiment {
-        separate(&setting, robot, &options, &after, filters, &mut effects);
+    if let Some((robot, seed)) = request.experiment {
+        separate(&setting, robot, seed, &after, filters, &mut effects);
     }
-    let visible = visible(&setting, &search, &found.after);
+    let visible = visible(&search, &found.after);
     let leftovers = leftovers(&search.weighing.spectra, &found.after);
     let moved = request.moved;
     let told = Told { setting: &setting, moved, filters, found, before, after };
@@ -291,7 +288,7 @@ const MOST_MOVES: usize = 2;
 fn conditioned(logs: Vec<MeasuredLog>, filters: Filters) -> Result<Vec<Signals>, Error> {
     let of = |log: MeasuredLog| {
         let file = log.file.clone();
-        Signals::new(log, filters).map_err(|error| Error::condition(file, error))
+        Signals::new(log, filters).map_err(|error| Cause::Condition(file, error).into())
     };
     logs.into_iter().map(of).collect()
 }

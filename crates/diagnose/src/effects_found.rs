@@ -4,7 +4,7 @@
 use super::alias::{ExactAliases, Named};
 use super::candidate::Candidate;
 use super::error::Error;
-use super::experiment::{Ambiguity, Experiment, ExperimentOptions};
+use super::experiment::{Ambiguity, Experiment};
 use super::gap::Gap;
 use super::given::is_driven;
 use super::hypothesis::Hypothesis;
@@ -104,6 +104,10 @@ pub(super) fn found_effects(
         let without = search.settled(parts.clone(), Some(all));
         let taken = &after.taken[given + place];
         let reopened = setting.state(&parts, &before.z);
+        // Another law than what is there has other values in another motion (Chow 1960): errors
+        // have in them how far values by the logs for training are from those by all logs.
+        let by_all = all.values(place);
+        let std = |k: usize| after.deviations[given + place][k].hypot(taken.values[k] - by_all[k]);
         FoundEffect {
             candidate: taken.candidate,
             log_odds: all.posterior - without.posterior,
@@ -111,7 +115,7 @@ pub(super) fn found_effects(
             share: (gap(&reopened) - gap(after)) / whole,
             log_predicted: predicted - setting.log_predicted(&judging, &reopened),
             is_named: true,
-            parameters: values(setting, all, after, place),
+            parameters: values(setting, after, given + place, std),
             alternatives: alternatives(found, place),
             exact: Vec::new(),
             experiment: None,
@@ -136,23 +140,19 @@ fn alternatives(found: &Found, place: usize) -> Vec<Alternative> {
         .collect()
 }
 
-/// The parameters of an effect that was found. Their errors have in them how far values by the logs
-/// for training are from those by all logs: another law than what is there has other values in
-/// another motion (Chow 1960).
+/// The parameters of an effect of a state, each with an error.
 fn values(
     setting: &Setting<'_>,
-    all: &Hypothesis,
     state: &State,
-    place: usize,
+    own: usize,
+    std: impl Fn(usize) -> f64,
 ) -> Vec<EffectValue> {
-    let own = setting.given.len() + place;
     let taken = &state.taken[own];
     let parameters = setting.candidates[taken.candidate].law.parameters();
-    let by_all = all.values(place);
     let value = |(k, parameter): (usize, &LawParameter)| EffectValue {
         name: parameter.name.clone(),
         value: taken.values[k],
-        std: state.deviations[own][k].hypot(taken.values[k] - by_all[k]),
+        std: std(k),
         unit: parameter.unit.clone(),
     };
     parameters.iter().enumerate().map(value).collect()
@@ -179,19 +179,9 @@ pub(super) fn tell_aliases(
 
 /// What these logs say of the effects that the model has.
 pub(super) fn given_effects(setting: &Setting<'_>, state: &State) -> Vec<GivenEffect> {
-    let of = |place: usize| {
-        let taken = &state.taken[place];
-        let parameters = setting.candidates[taken.candidate].law.parameters();
-        let value = |(k, parameter): (usize, &LawParameter)| EffectValue {
-            name: parameter.name.clone(),
-            value: taken.values[k],
-            std: state.deviations[place][k],
-            unit: parameter.unit.clone(),
-        };
-        GivenEffect {
-            candidate: taken.candidate,
-            parameters: parameters.iter().enumerate().map(value).collect(),
-        }
+    let of = |place: usize| GivenEffect {
+        candidate: state.taken[place].candidate,
+        parameters: values(setting, state, place, |k| state.deviations[place][k]),
     };
     (0..setting.given.len()).map(of).collect()
 }
@@ -229,7 +219,7 @@ const MOST_RIVALS: usize = 3;
 pub(super) fn separate(
     setting: &Setting<'_>,
     robot: &Robot,
-    options: &ExperimentOptions,
+    seed: u64,
     state: &State,
     filters: Filters,
     found: &mut [FoundEffect],
@@ -255,6 +245,6 @@ pub(super) fn separate(
             names: [vec![own], rivals].concat(),
             others,
         };
-        one.experiment = Some(ambiguity.separate(robot, options));
+        one.experiment = Some(ambiguity.separate(robot, seed));
     }
 }

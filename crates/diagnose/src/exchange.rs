@@ -79,7 +79,7 @@ impl Search<'_> {
     /// be added to it.
     fn is_missing_beside(&self, own: &Part, one: &Hypothesis) -> bool {
         let place = one.parts.len();
-        if place == self.options.most_effects {
+        if place == self.most {
             return false;
         }
         let parts = [&one.parts[..], std::slice::from_ref(own)].concat();

@@ -9,8 +9,8 @@
 use super::blocks::{block_costs, paired};
 use super::candidate::Candidate;
 use super::data::{Data, ModelTorques};
-use super::error::Error;
-use super::floor::{NoiseFloor, rms};
+use super::error::{Cause, Error};
+use super::floor::rms;
 use super::followed::Follower;
 use super::nominal::Nominal;
 use super::problem::{Fitted, Problem};
@@ -21,33 +21,20 @@ use crate::policy::experiment::{DISTINCT, ROWS_PER_SAMPLE};
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::functions::modelled;
 use denavit_excite::{Ends, ExciteOptions, Family, Feasible};
+use denavit_measure::JointIndex;
 use denavit_measure::log::{JointSignals, MeasuredLog};
-use denavit_measure::{JointIndex, LogIndex};
 use denavit_numerics::Random;
 use denavit_plants::trajectory::Reference;
 use serde_json::{Value, json};
-use std::fmt;
 
-/// How an experiment is looked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ExperimentOptions {
-    /// Length of a lap \[s\].
-    pub duration_s: f64,
-    /// Motions at random of which the best is improved.
-    pub starts: usize,
-    /// Motions that are tried to improve it.
-    pub steps: usize,
-    /// Logs that are simulated of each name.
-    pub draws: usize,
-    /// Of all that is drawn.
-    pub seed: u64,
-}
+/// Length of a lap \[s\].
+const LAP_S: f64 = 10.0;
 
-impl Default for ExperimentOptions {
-    fn default() -> Self {
-        Self { duration_s: 10.0, starts: 9, steps: 24, draws: 20, seed: 1 }
-    }
-}
+/// Motions at random of which the best is improved, motions that are tried to improve it, and logs
+/// that are simulated of each name.
+const STARTS: usize = 9;
+const STEPS: usize = 24;
+const DRAWS: usize = 20;
 
 /// Harmonics of the Fourier series that joints follow: few go far, many are fast.
 const HARMONICS: [usize; 3] = [2, 3, 5];
@@ -75,30 +62,6 @@ pub struct Experiment {
     pub draws: usize,
 }
 
-/// Why there is no experiment.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum NoExperiment {
-    /// The robot has no limits to stay within, or none that let it move.
-    Limits(denavit_excite::Error),
-    /// Even rest exceeds a limit.
-    Rest,
-    /// The motor of a joint was measured, and the model gives the spring behind it no stiffness, so
-    /// that nothing says how its motor moves: holds the joint.
-    NoStiffness(String),
-}
-
-impl fmt::Display for NoExperiment {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Limits(error) => write!(f, "{error}"),
-            Self::Rest => write!(f, "even at rest a limit of the robot is exceeded"),
-            Self::NoStiffness(joint) => {
-                write!(f, "the model has no stiffness of the spring behind the motor of `{joint}`")
-            }
-        }
-    }
-}
-
 /// What names are to be told apart in: the state of a diagnosis.
 pub(super) struct Ambiguity<'a> {
     pub(super) nominal: &'a Nominal<'a>,
@@ -106,7 +69,7 @@ pub(super) struct Ambiguity<'a> {
     /// A log, its filters and its floor: as the next one will be.
     pub(super) log: &'a Signals,
     pub(super) filters: Filters,
-    pub(super) floor: &'a NoiseFloor,
+    pub(super) floor: &'a [f64],
     /// The nominal model's own parameters, in their deviations.
     pub(super) z: &'a [f64],
     /// The names: what was found, then what would do as well.
@@ -126,24 +89,19 @@ struct Seen<'a> {
 
 impl Ambiguity<'_> {
     /// Looks for an experiment.
-    pub(super) fn separate(
-        &self,
-        robot: &Robot,
-        options: &ExperimentOptions,
-    ) -> Result<Experiment, Error> {
+    pub(super) fn separate(&self, robot: &Robot, seed: u64) -> Result<Experiment, Error> {
         let nominal = self.nominal;
         let is_lost = |joint: &usize| {
             self.log.motor[*joint].is_some()
                 && nominal.spring_equation(JointIndex(*joint)).is_none()
         };
         if let Some(joint) = (0..nominal.model.joints.len()).find(is_lost) {
-            let joint = nominal.model.joints[joint].name.clone();
-            return Err(NoExperiment::NoStiffness(joint).into());
+            return Err(Cause::NoExperiment(nominal.lacks_stiffness(JointIndex(joint))).into());
         }
         let of_harmonics = |harmonics: usize| {
             let excite = ExciteOptions {
                 family: Family::Fourier { harmonics },
-                duration_s: options.duration_s,
+                duration_s: LAP_S,
                 // The motor before a spring is ahead by what accelerations take, and must not jump.
                 ends: Ends {
                     at_rest: true,
@@ -151,19 +109,20 @@ impl Ambiguity<'_> {
                     closed: true,
                 },
                 with: modelled(robot),
-                seed: options.seed,
+                seed,
                 ..ExciteOptions::default()
             };
             Feasible::new(robot, &excite)
         };
         let spaces = HARMONICS.into_iter().map(of_harmonics).collect::<Result<Vec<_>, _>>();
-        let mut spaces = spaces.map_err(NoExperiment::Limits)?;
-        let found = self.best(&mut spaces, options).ok_or(NoExperiment::Rest)?;
-        let (separation, x, space) = found;
+        let mut spaces = spaces.map_err(Cause::Limits)?;
+        let rest = || "even at rest a limit of the robot is exceeded".to_owned();
+        let found = self.best(&mut spaces, seed);
+        let (separation, x, space) = found.ok_or_else(|| Cause::NoExperiment(rest()))?;
         let feasible = &spaces[space];
         let references = feasible.references(&x);
-        let seen = self.log_of(&references, options).and_then(|log| self.seen(log));
-        let power = seen.map_or(0.0, |seen| self.power(&seen, options));
+        let seen = self.log_of(&references).and_then(|log| self.seen(log));
+        let power = seen.map_or(0.0, |seen| self.power(&seen, seed));
         let rivals: Vec<usize> = self.names[1..].iter().map(|one| one.candidate).collect();
         let separation_before = self.seen(self.log.clone()).map_or(0.0, |seen| self.least(&seen));
         let name = |candidate: usize| self.candidates[candidate].name();
@@ -173,45 +132,41 @@ impl Ambiguity<'_> {
             "separation": separation,
             "separation_before": separation_before,
             "power": power,
-            "draws": options.draws,
-            "seed": options.seed,
+            "draws": DRAWS,
+            "seed": seed,
         });
         let title = format!("{}_separating", self.nominal.model.model);
         Ok(Experiment {
             file: feasible.to_json(&x, &title, &remarks),
             rivals,
             references,
-            duration_s: options.duration_s,
+            duration_s: LAP_S,
             separation,
             separation_before,
             power,
-            draws: options.draws,
+            draws: DRAWS,
         })
     }
 
     /// The motion of the largest separation, with its space: the best of some at random, moved at
     /// random as long as that makes it better.
-    fn best(
-        &self,
-        spaces: &mut [Feasible],
-        options: &ExperimentOptions,
-    ) -> Option<(f64, Vec<f64>, usize)> {
+    fn best(&self, spaces: &mut [Feasible], seed: u64) -> Option<(f64, Vec<f64>, usize)> {
         let mut best: Option<(f64, Vec<f64>, usize)> = None;
         let is_better = |best: &Option<(f64, Vec<f64>, usize)>, value: f64| {
             value.is_finite() && best.as_ref().is_none_or(|(most, ..)| value > *most)
         };
-        for start in 0..options.starts {
+        for start in 0..STARTS {
             let space = start % spaces.len();
             let feasible = &mut spaces[space];
             let Some(x) = feasible.random(start) else { continue };
-            let value = self.value(feasible, &x, options);
+            let value = self.value(feasible, &x);
             if is_better(&best, value) {
                 best = Some((value, x, space));
             }
         }
-        let mut random = Random::new(options.seed);
+        let mut random = Random::new(seed);
         let mut reach = 0.5;
-        for _ in 0..options.steps {
+        for _ in 0..STEPS {
             let Some((_, x, space)) = &best else { break };
             let (size, space) = (rms(x), *space);
             // Also larger, until a limit is reached.
@@ -219,7 +174,7 @@ impl Ambiguity<'_> {
             let moved = x.iter().map(|x| larger * x + reach * size * random.normal()).collect();
             let feasible = &mut spaces[space];
             let Some(moved) = feasible.within(moved) else { continue };
-            let value = self.value(feasible, &moved, options);
+            let value = self.value(feasible, &moved);
             if is_better(&best, value) {
                 best = Some((value, moved, space));
                 reach = f64::min(1.0, 1.3 * reach);
@@ -230,21 +185,19 @@ impl Ambiguity<'_> {
         best
     }
 
-    fn value(&self, feasible: &Feasible, x: &[f64], options: &ExperimentOptions) -> f64 {
-        let log = self.log_of(&feasible.references(x), options);
+    fn value(&self, feasible: &Feasible, x: &[f64]) -> f64 {
+        let log = self.log_of(&feasible.references(x));
         let seen = log.and_then(|log| self.seen(log));
         seen.map_or(f64::NEG_INFINITY, |seen| self.least(&seen))
     }
 
     /// One lap, and as much of the next as the edges of filters take; none if no motion of motors
     /// before springs makes the joints follow.
-    fn log_of(&self, references: &[Reference], options: &ExperimentOptions) -> Option<Signals> {
+    fn log_of(&self, references: &[Reference]) -> Option<Signals> {
         let step_s = self.log.log_step_s;
-        let rows = (1.1 * options.duration_s / step_s) as usize;
+        let rows = (1.1 * LAP_S / step_s) as usize;
         let position = |reference: &Reference| -> Vec<f64> {
-            (0..rows)
-                .map(|k| reference.at((step_s * k as f64) % options.duration_s).position)
-                .collect()
+            (0..rows).map(|k| reference.at((step_s * k as f64) % LAP_S).position).collect()
         };
         let mut motors = vec![None; references.len()];
         if !self.nominal.springs.is_empty() {
@@ -254,7 +207,7 @@ impl Ambiguity<'_> {
                 laws: self.names[..1].iter().chain(&self.others).map(|o| self.fitted(o)).collect(),
                 log: self.log,
             };
-            motors = follower.motors(references, rows, options.duration_s)?;
+            motors = follower.motors(references, rows, LAP_S)?;
         }
         let joint = |(joint, reference): (usize, &Reference)| JointSignals {
             q: position(reference),
@@ -286,21 +239,24 @@ impl Ambiguity<'_> {
         let torques = data.model_torques(self.z);
         let all = self.names.iter().chain(&self.others);
         let laws: Vec<Fitted<'_>> = all.map(|one| self.fitted(one)).collect();
-        let unsure = turning(&data, &torques, &laws);
-        let mut deviation: Vec<f64> = unsure.iter().map(|row| row.deviation(1.0)).collect();
+        let mut deviation = turning(&data, &torques, &laws);
         for stretch in &data.stretches {
-            let floor = self.floor.deviation[stretch.equation];
-            let rows = &mut deviation[stretch.first..stretch.first + stretch.rows];
-            rows.iter_mut().for_each(|row| *row = row.hypot(floor));
+            let floor = self.floor[stretch.equation];
+            let rows = deviation[stretch.range()].iter_mut();
+            rows.for_each(|row| *row = row.hypot(floor));
         }
-        let names = laws[..self.names.len()].iter().map(|law| rows_of(&data, law, &torques));
-        let names = names.collect();
+        let rows_of = |one: &Fitted<'_>| {
+            let mut rows = vec![0.0; data.rows()];
+            data.response(one.law, &one.values, &torques).subtract_from(&mut rows);
+            rows.into_iter().map(|row| -row).collect()
+        };
+        let names = laws[..self.names.len()].iter().map(rows_of).collect();
         Some(Seen { data, torques, deviation, names })
     }
 
     /// The least separation of what was found from another name.
     fn least(&self, seen: &Seen<'_>) -> f64 {
-        let problem = Problem::new(&seen.data, &seen.deviation, &[]);
+        let problem = Problem::new(&seen.data, &seen.deviation);
         let mut least = f64::INFINITY;
         for rival in 1..self.names.len() {
             for (truth, told) in [(0, rival), (rival, 0)] {
@@ -329,13 +285,13 @@ impl Ambiguity<'_> {
 
     /// The share of simulated logs in which the right name is told: what was found from all others,
     /// and each of these from it.
-    fn power(&self, seen: &Seen<'_>, options: &ExperimentOptions) -> f64 {
-        let problem = Problem::new(&seen.data, &seen.deviation, &[]);
-        let mut random = Random::new(options.seed);
+    fn power(&self, seen: &Seen<'_>, seed: u64) -> f64 {
+        let problem = Problem::new(&seen.data, &seen.deviation);
+        let mut random = Random::new(seed);
         let (mut right, mut all) = (0, 0);
         for truth in 0..self.names.len() {
             let against = if truth == 0 { 1..self.names.len() } else { 0..1 };
-            for _ in 0..options.draws {
+            for _ in 0..DRAWS {
                 let mut rows = seen.names[truth].clone();
                 self.add_noise(seen, &mut random, &mut rows);
                 let own = self.left(seen, &problem, rows.clone(), truth);
@@ -355,23 +311,9 @@ impl Ambiguity<'_> {
         let signals = &seen.data.signals[0];
         let gain = signals.noise_gain();
         for stretch in &seen.data.stretches {
-            let deviation = self.floor.deviation[stretch.equation] / gain;
+            let deviation = self.floor[stretch.equation] / gain;
             let noise = signals.white_rows(|| deviation * random.normal());
-            let rows = &mut rows[stretch.first..stretch.first + stretch.rows];
-            rows.iter_mut().zip(noise).for_each(|(row, noise)| *row += noise);
+            rows[stretch.range()].iter_mut().zip(noise).for_each(|(row, noise)| *row += noise);
         }
     }
-}
-
-/// What a law adds to the rows of data.
-fn rows_of(data: &Data<'_>, fitted: &Fitted<'_>, torques: &[ModelTorques]) -> Vec<f64> {
-    let mut rows = vec![0.0; data.rows()];
-    for (log, torques) in torques.iter().enumerate() {
-        let signals = &data.signals[log];
-        let motion = torques.motion(data.nominal, signals);
-        let response = fitted.law.response(motion, &fitted.values);
-        data.in_rows(LogIndex(log), signals, &response).subtract_from(&mut rows);
-    }
-    rows.iter_mut().for_each(|row| *row = -*row);
-    rows
 }

@@ -2,11 +2,11 @@
 //! says of their parameters.
 
 use super::candidate::Candidate;
-use super::catalogue::law_of;
+use super::joint_law::JointLaw;
 use super::law::{Law, Motion, Response};
-use super::nominal::Uncertainty;
 use super::state::Taken;
 use crate::policy::given::MOST;
+use crate::policy::nominal::JOINT;
 use denavit_codegen::effect::{Channel, Occurrence};
 use denavit_measure::JointIndex;
 use denavit_plants::effect::{AddedLaw, LawParameter};
@@ -22,7 +22,7 @@ pub struct Belief {
 
 /// The law of an effect that the model has.
 struct GivenLaw {
-    law: Box<dyn Law>,
+    law: JointLaw,
     /// Bounds are where the model believes them.
     parameters: Vec<LawParameter>,
     beliefs: Vec<Belief>,
@@ -48,17 +48,14 @@ impl Law for GivenLaw {
 
 /// The effects of a model as candidates that are taken already: those of logged rates are none,
 /// since rates are derivatives of positions here. Where the model states no deviation, a parameter
-/// may be off by the share that `uncertainty` has for joints.
-pub fn given_candidates(
-    laws: Vec<AddedLaw>,
-    uncertainty: Uncertainty,
-) -> (Vec<Candidate>, Vec<Taken>) {
+/// may be off as those of joints.
+pub fn given_candidates(laws: Vec<AddedLaw>) -> (Vec<Candidate>, Vec<Taken>) {
     let laws = laws.into_iter().filter(|one| one.law.channel() != Some(Channel::Rate));
     let of = |(candidate, one): (usize, AddedLaw)| {
         let AddedLaw { title, at, joint, second, law, values, deviations, .. } = one;
         let belief = |(&value, std): (&f64, &Option<f64>)| Belief {
             value,
-            std: std.unwrap_or(uncertainty.joint * value.abs()),
+            std: std.unwrap_or(JOINT * value.abs()),
         };
         let beliefs: Vec<Belief> = values.iter().zip(&deviations).map(belief).collect();
         let mut parameters = law.parameters.clone();
@@ -70,7 +67,7 @@ pub fn given_candidates(
         let effect = law.name.clone();
         let joint = JointIndex(joint);
         let law = Box::new(GivenLaw {
-            law: law_of(law, joint, second.map(JointIndex)),
+            law: JointLaw::new(law, joint, second.map(JointIndex)),
             parameters,
             beliefs,
         });

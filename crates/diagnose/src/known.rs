@@ -98,7 +98,7 @@ fn heights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Filters, Uncertainty};
+    use crate::Filters;
     use denavit_codegen::regressor::functions::modelled;
     use denavit_measure::log::{JointSignals, MeasuredLog};
     use denavit_plants::regression::RegressionModel;
@@ -137,7 +137,7 @@ mod tests {
         let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
         let signals = Signals::new(waves(), Filters::of_torques(10.0)).expect("long enough");
         let logs = [signals];
-        let nominal = Nominal::new(&model, Uncertainty::default()).moving_as(&logs);
+        let nominal = Nominal::new(&model).moving_as(&logs);
         let ([signals], phi) = (&logs, nominal.phi(&vec![0.0; nominal.len()]));
 
         let [weights] = &weights(&nominal, signals, &phi)[..] else { panic!("one joint") };

@@ -4,7 +4,7 @@
 //! - [`Signals`]: logs, filtered
 //! - [`Nominal`]: what the model says, and how sure it is
 //! - [`Data`]: both as rows
-//! - [`NoiseFloor`], [`Gap`]: how far they are apart, and how far they must be
+//! - [`Gap`]: how far they are apart, and how far they must be
 //! - [`Candidate`], [`Law`]: what may be missing
 //! - [`diagnose()`]: which effects are missing, by their evidence
 
@@ -64,22 +64,22 @@ pub use curve::Curve;
 pub use data::{Data, ModelTorques, RowResponse, Stretch};
 pub use diagnosis::{Diagnosis, Gaps, Progress, Request, diagnose};
 pub use effects_found::{Alternative, EffectValue, FoundEffect, GivenEffect};
-pub use elastic::{BeforeSprings, SeriesSpring, before_springs};
+pub use elastic::{BeforeSprings, Spring, before_springs};
 pub use error::{Error, ErrorKind};
 pub use excitation::Visible;
-pub use experiment::{Experiment, ExperimentOptions};
-pub use floor::{NoiseFloor, rms};
+pub use experiment::Experiment;
+pub use floor::rms;
 pub use gap::{Gap, share_closed};
 pub use given::{Belief, given_candidates};
 pub use law::{Law, Motion, Response};
 pub use law_curve::{LawCurve, Quantity};
 pub use leftover::Leftover;
 pub use logged::LoggedMotion;
-pub use nominal::{Nominal, Phi, Spring, Uncertain, Uncertainty};
+pub use nominal::{Nominal, Phi, Uncertain};
 pub use problem::{Fitted, Problem};
 pub use regime::{Part, Regime, Where};
 pub use rows::PerJoint;
-pub use search::{SearchOptions, Step};
+pub use search::Step;
 pub use signals::{Filters, Signals};
 pub use simulated::{MotionGap, MotionGaps, Moved};
 pub use state::Taken;

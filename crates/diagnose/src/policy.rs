@@ -133,12 +133,19 @@ pub(crate) mod known {
     pub(crate) const RINGING: f64 = 0.3;
 }
 
+/// `nominal.rs`: What the model says, and how sure it is of it.
+pub(crate) mod nominal {
+    /// How far numbers of bodies may be off where the model says nothing of that, as a share of
+    /// their value.
+    pub(crate) const BODY: f64 = 0.05;
+
+    /// The same of friction, rotors, offsets and springs, which are known from measurements alone.
+    pub(crate) const JOINT: f64 = 1.0;
+}
+
 /// `problem.rs`: Weighted least squares with everything that the nominal model is not sure of
 /// eliminated.
 pub(crate) mod problem {
-    /// The least eigenvalue of scaled normal equations of a direction that is one.
-    pub(crate) const INDEPENDENT: f64 = 1e-7;
-
     /// The share of the cost that a step must gain for another to be taken, and the damping beyond
     /// which no step gains anything.
     pub(crate) const SETTLED: f64 = 1e-5;
@@ -162,12 +169,6 @@ pub(crate) mod signals {
     /// The rate of laws \[Hz\], at least: a step of friction is not at a sample, and the mean of a
     /// cell knows where it is.
     pub(crate) const LEAST_RATE_HZ: f64 = 1000.0;
-}
-
-/// `simulated.rs`: The second gap: models in motion.
-pub(crate) mod simulated {
-    /// The longest motion of a log that is moved along \[s\].
-    pub(crate) const LONGEST_S: f64 = 60.0;
 }
 
 /// `standstill.rs`: Where a drive rests between two motions.

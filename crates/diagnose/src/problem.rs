@@ -7,9 +7,7 @@
 use super::data::{Data, ModelTorques, RowResponse};
 use super::held::Held;
 use super::law::Law;
-use super::signals::Signals;
-use crate::policy::problem::{INDEPENDENT, SETTLED, STUCK};
-use denavit_measure::LogIndex;
+use crate::policy::problem::{SETTLED, STUCK};
 use nalgebra::{DMatrix, DVector};
 use std::rc::Rc;
 
@@ -27,10 +25,8 @@ pub struct Fitted<'l> {
 pub struct Problem<'a> {
     /// The rows.
     pub data: &'a Data<'a>,
-    /// The motion that laws are evaluated on: that of the data, or a coarse view of it.
-    pub signals: &'a [Signals],
     /// One over the deviation of each row.
-    pub weights: Vec<f64>,
+    weights: Vec<f64>,
     factors: Rc<Factors>,
     held: Held,
     residual: DVector<f64>,
@@ -55,59 +51,29 @@ pub struct Found {
     pub z: Vec<f64>,
     /// What is left of each row [N m, N].
     pub residual: Vec<f64>,
-    /// Directions in which the laws' parameters change what is left: a body's ten numbers move few
-    /// torques of a planar robot.
-    pub rank: usize,
 }
 
 /// Most iterations of a search.
 const ITERATIONS: usize = 12;
 
 impl<'a> Problem<'a> {
-    /// A problem with a deviation for each row. Laws that are `given` are taken away, and what
-    /// they are linear in near their values is eliminated too.
-    pub fn new(data: &'a Data<'a>, deviation: &[f64], given: &[RowResponse]) -> Self {
+    /// A problem with a deviation for each row.
+    pub fn new(data: &'a Data<'a>, deviation: &[f64]) -> Self {
         let weights: Vec<f64> = deviation.iter().map(|deviation| 1.0 / deviation).collect();
-        let (rows, own) = (data.rows(), data.columns.len());
-        let of_given = |response: &RowResponse| response.gradient.first().map_or(0, Vec::len);
-        let width = own + given.iter().map(of_given).sum::<usize>();
+        let (rows, width) = (data.rows(), data.columns.len());
         let mut stacked = DMatrix::zeros(rows + width, width);
         let residual = data.residual.iter().zip(&weights).map(|(r, w)| r * w);
-        let mut residual = DVector::from_iterator(rows, residual);
+        let residual = DVector::from_iterator(rows, residual);
         for (place, column) in data.columns.iter().enumerate() {
             stacked[(rows + place, place)] = 1.0;
             for (row, (entry, weight)) in column.iter().zip(&weights).enumerate() {
                 stacked[(row, place)] = entry * weight;
             }
         }
-        let mut begin = own;
-        for response in given {
-            for (place, stretch) in response.stretches.iter().enumerate() {
-                for k in 0..stretch.rows {
-                    let (row, weight) = (stretch.first + k, weights[stretch.first + k]);
-                    residual[row] -= weight * response.torque[place][k];
-                    for (parameter, gradient) in response.gradient[place].iter().enumerate() {
-                        let is_certain = response.stiffness[parameter].is_infinite();
-                        let weight = if is_certain { 0.0 } else { weight };
-                        stacked[(row, begin + parameter)] = weight * gradient[k];
-                    }
-                }
-            }
-            for parameter in 0..of_given(response) {
-                // A column of zeros must not make R singular.
-                let place = begin + parameter;
-                let least = 1e-6 * stacked.column(place).norm().max(1e-6);
-                let stiffness = response.stiffness[parameter];
-                let stated = if stiffness.is_finite() { stiffness } else { 0.0 };
-                stacked[(rows + place, place)] = stated.max(least);
-            }
-            begin += of_given(response);
-        }
         let qr = stacked.qr();
         let (q, r) = (qr.q().rows(0, rows).into_owned(), qr.r());
         let held = Held::new(&r, &vec![None; width]);
-        let factors = Rc::new(Factors { q, r });
-        Self { data, signals: &data.signals, weights, factors, held, residual, rows: None }
+        Self { data, weights, factors: Rc::new(Factors { q, r }), held, residual, rows: None }
     }
 
     /// The same problem for other rows in place of those of the data.
@@ -117,39 +83,18 @@ impl<'a> Problem<'a> {
         Self { residual, rows: Some(Rc::new(rows)), ..self.clone() }
     }
 
-    /// The same problem with entries of z that have values: the first ones of `held`, others are
-    /// free.
+    /// The same problem with entries of z that have values; those without one are free.
     pub fn holding(&self, held: &[Option<f64>]) -> Self {
-        let mut values = held.to_vec();
-        values.resize(self.factors.r.ncols(), None);
-        Self { held: Held::new(&self.factors.r, &values), ..self.clone() }
+        Self { held: Held::new(&self.factors.r, held), ..self.clone() }
     }
 
     /// The responses of laws to all logs, in the rows.
-    pub fn responses(&self, laws: &[Fitted<'_>], torques: &[ModelTorques]) -> Vec<RowResponse> {
-        let of_law = |fitted: &Fitted<'_>| {
-            let stiffness = |place: usize| {
-                fitted.law.beliefs().get(place).map_or(0.0, |belief| 1.0 / belief.std)
-            };
-            let stiffness = (0..fitted.values.len()).map(stiffness).collect();
-            let mut all = RowResponse { stiffness, ..RowResponse::default() };
-            for (log, torques) in torques.iter().enumerate() {
-                let signals = &self.signals[log];
-                let motion = torques.motion(self.data.nominal, signals);
-                let response = fitted.law.response(motion, &fitted.values);
-                all.append(self.data.in_rows(LogIndex(log), signals, &response));
-            }
-            all
-        };
-        laws.iter().map(of_law).collect()
+    fn responses(&self, laws: &[Fitted<'_>], torques: &[ModelTorques]) -> Vec<RowResponse> {
+        laws.iter().map(|one| self.data.response(one.law, &one.values, torques)).collect()
     }
 
     /// What laws with these responses leave, and the normal equations of their parameters.
-    pub fn look(&self, responses: &[RowResponse]) -> View {
-        self.products(responses).view(&self.held)
-    }
-
-    fn products(&self, responses: &[RowResponse]) -> Products {
+    fn look(&self, responses: &[RowResponse]) -> View {
         let mut rho = self.residual.clone();
         let mut columns: Vec<Vec<(usize, Vec<f64>)>> = Vec::new();
         for response in responses {
@@ -170,14 +115,14 @@ impl<'a> Problem<'a> {
                 }
             }
         }
-        Products::new(&self.factors.q, &rho, &columns)
+        View::new(&self.factors.q, &rho, &columns, &self.held)
     }
 
     /// Searches the values of laws from those given: Levenberg and Marquardt's steps within bounds.
     pub fn fit(&self, laws: &[Fitted<'_>], torques: &[ModelTorques]) -> Found {
         let mut laws = laws.to_vec();
         let mut responses = self.responses(&laws, torques);
-        let mut view = self.look(&responses).believing(&laws);
+        let mut view = self.look(&responses);
         let mut damping = 1e-4;
         for _ in 0..ITERATIONS {
             if view.gradient.is_empty() {
@@ -185,7 +130,7 @@ impl<'a> Problem<'a> {
             }
             let tried = moved(&laws, view.step(damping, &outward(&laws, &view)).as_slice());
             let next = self.responses(&tried, torques);
-            let seen = self.look(&next).believing(&tried);
+            let seen = self.look(&next);
             let gain = view.cost - seen.cost;
             if gain > 0.0 {
                 let is_done = gain < SETTLED * view.cost;
@@ -203,13 +148,6 @@ impl<'a> Problem<'a> {
         self.found(&laws, &responses, &view)
     }
 
-    /// What laws leave with the values that they have.
-    pub fn at(&self, laws: &[Fitted<'_>], torques: &[ModelTorques]) -> Found {
-        let responses = self.responses(laws, torques);
-        let view = self.look(&responses).believing(laws);
-        self.found(laws, &responses, &view)
-    }
-
     fn found(&self, laws: &[Fitted<'_>], responses: &[RowResponse], view: &View) -> Found {
         let z = self.z(&view.explained);
         let mut residual = self.data.without(self.rows.as_deref(), &z);
@@ -217,7 +155,6 @@ impl<'a> Problem<'a> {
         Found {
             values: laws.iter().map(|fitted| fitted.values.clone()).collect(),
             cost: view.cost,
-            rank: view.rank(),
             z,
             residual,
         }
@@ -236,34 +173,25 @@ impl<'a> Problem<'a> {
 }
 
 /// What is left of the rows, and the normal equations of the laws' parameters.
-#[derive(Clone, Debug)]
-pub struct View {
+struct View {
     /// Sum of squares of what is left.
-    pub cost: f64,
+    cost: f64,
     /// Half the negative derivative of the cost by each parameter.
-    pub gradient: DVector<f64>,
+    gradient: DVector<f64>,
     /// Half its second derivative, of Gauss and Newton.
-    pub normal: DMatrix<f64>,
+    normal: DMatrix<f64>,
     /// Squared length of each column before z is eliminated.
-    pub lengths: Vec<f64>,
+    lengths: DVector<f64>,
     explained: DVector<f64>,
 }
 
-/// Products of the rows and of the laws' columns with Q, whatever is held.
-struct Products {
-    /// |rho|^2.
-    square: f64,
-    /// Q' rho.
-    all: DVector<f64>,
-    /// Q' times the columns.
-    inside: DMatrix<f64>,
-    gradient: DVector<f64>,
-    normal: DMatrix<f64>,
-    lengths: Vec<f64>,
-}
-
-impl Products {
-    fn new(q: &DMatrix<f64>, rho: &DVector<f64>, columns: &[Vec<(usize, Vec<f64>)>]) -> Self {
+impl View {
+    fn new(
+        q: &DMatrix<f64>,
+        rho: &DVector<f64>,
+        columns: &[Vec<(usize, Vec<f64>)>],
+        held: &Held,
+    ) -> Self {
         let count = columns.len();
         let mut inside = DMatrix::zeros(q.ncols(), count);
         let mut gradient = DVector::zeros(count);
@@ -277,7 +205,6 @@ impl Products {
             }
         }
         let mut normal = DMatrix::zeros(count, count);
-        let mut lengths = vec![0.0; count];
         for a in 0..count {
             for b in a..count {
                 let mut sum = 0.0;
@@ -288,45 +215,20 @@ impl Products {
                     };
                     sum += same.map(|(_, other)| dot(other)).sum::<f64>();
                 }
-                if a == b {
-                    lengths[a] = sum;
-                }
                 normal[(a, b)] = sum;
                 normal[(b, a)] = sum;
             }
         }
-        Self { square: rho.norm_squared(), all: q.tr_mul(rho), inside, gradient, normal, lengths }
-    }
-
-    fn view(&self, held: &Held) -> View {
-        let mut inside = self.inside.clone();
-        let explained = &self.all - &held.across * held.across.tr_mul(&self.all);
-        let mut gradient = &self.gradient - inside.tr_mul(&held.offset);
+        let lengths = normal.diagonal();
+        let all = q.tr_mul(rho);
+        let explained = &all - &held.across * held.across.tr_mul(&all);
+        gradient -= inside.tr_mul(&held.offset);
         held.free(&mut inside);
         gradient -= inside.tr_mul(&explained);
-        let normal = &self.normal - inside.tr_mul(&inside);
-        let offset = held.offset.norm_squared() - 2.0 * held.offset.dot(&self.all);
-        let cost = self.square - explained.norm_squared() + offset;
-        View { cost, gradient, normal, lengths: self.lengths.clone(), explained }
-    }
-}
-
-impl View {
-    /// With what the model says of parameters, as if it had been measured.
-    pub(super) fn believing(mut self, laws: &[Fitted<'_>]) -> Self {
-        let mut begin = 0;
-        for fitted in laws {
-            let beliefs = fitted.law.beliefs().iter().zip(&fitted.values).enumerate();
-            for (place, (belief, value)) in beliefs.filter(|(_, (belief, _))| belief.std > 0.0) {
-                let place = begin + place;
-                let weight = belief.std.powi(-2);
-                self.cost += weight * (belief.value - value).powi(2);
-                self.gradient[place] += weight * (belief.value - value);
-                self.normal[(place, place)] += weight;
-            }
-            begin += fitted.values.len();
-        }
-        self
+        normal -= inside.tr_mul(&inside);
+        let offset = held.offset.norm_squared() - 2.0 * held.offset.dot(&all);
+        let cost = rho.norm_squared() - explained.norm_squared() + offset;
+        Self { cost, gradient, normal, lengths, explained }
     }
 
     /// The damped step; parameters in `held` stay.
@@ -346,17 +248,6 @@ impl View {
             }
         }
         scaled_solve(&normal, &gradient).unwrap_or_else(|| DVector::zeros(count))
-    }
-
-    fn rank(&self) -> usize {
-        let scale = |k: usize| self.normal[(k, k)].max(1e-12 * self.lengths[k]).max(1e-300).sqrt();
-        let count = self.gradient.len();
-        if count == 0 {
-            return 0;
-        }
-        let scaled =
-            DMatrix::from_fn(count, count, |a, b| self.normal[(a, b)] / (scale(a) * scale(b)));
-        scaled.symmetric_eigenvalues().iter().filter(|&&value| value > INDEPENDENT).count()
     }
 }
 

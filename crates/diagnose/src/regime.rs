@@ -122,13 +122,13 @@ pub(super) fn where_left(
         if own.is_empty() {
             continue;
         }
-        let all = |stretch: &Stretch| stretch.first..stretch.first + stretch.rows;
+        let all = |stretch: &Stretch| stretch.range();
         let squares = |values: &[f64]| -> f64 {
             own.iter().flat_map(|s| &values[all(s)]).map(|value| value * value).sum()
         };
         let (left, torque) = (squares(residual), squares(&data.torque));
         let noise: f64 =
-            own.iter().map(|s| s.rows as f64 * floors[s.log.0].deviation[equation].powi(2)).sum();
+            own.iter().map(|s| s.rows as f64 * floors[s.log.0][equation].powi(2)).sum();
         let mut sums: Vec<(Regime, f64, usize)> = Vec::new();
         for stretch in &own {
             let flags = regimes(data, &torques[stretch.log.0], stretch, filter_s);
@@ -180,7 +180,7 @@ fn regimes(
     let [q, qd, qdd] =
         [&signals.q, &signals.qd, &signals.qdd].map(|all| signals.at_rows(&all[joint.0]));
     let load = signals.at_rows(&torques.load[joint.0]);
-    let torque = &data.torque[stretch.first..stretch.first + stretch.rows];
+    let torque = &data.torque[stretch.range()];
     let most = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     let (low, high) = q.iter().fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
     let sixth = (high - low) / 6.0;
@@ -219,17 +219,13 @@ fn regimes(
 
 /// The second in which most is left.
 fn window(data: &Data<'_>, residual: &[f64], own: &[Stretch]) -> ([f64; 2], f64) {
-    let whole: f64 = own
-        .iter()
-        .flat_map(|s| &residual[s.first..s.first + s.rows])
-        .map(|value| value * value)
-        .sum();
+    let whole: f64 = own.iter().flat_map(|s| &residual[s.range()]).map(|value| value * value).sum();
     let mut best = ([0.0; 2], 0.0);
     for stretch in own {
         let signals = &data.signals[stretch.log.0];
         let times = signals.at_rows(&signals.t);
         let length = ((1.0 / signals.row_step_s()) as usize).clamp(1, stretch.rows);
-        let part = &residual[stretch.first..stretch.first + stretch.rows];
+        let part = &residual[stretch.range()];
         let mut sum: f64 = part[..length].iter().map(|value| value * value).sum();
         for end in length..=part.len() {
             let share = sum / whole.max(f64::MIN_POSITIVE);

@@ -51,7 +51,7 @@ impl Search<'_> {
         let mut seen = vec![now.names()];
         let (is_full, is_stopped) = loop {
             let is_stopped = !watch(&now.candidates());
-            let room = self.options.most_effects.saturating_sub(now.parts.len());
+            let room = self.most.saturating_sub(now.parts.len());
             let next = (room > 0 && !is_stopped).then(|| self.next(&now, room, &mut steps));
             if let Some(next) = next.flatten() {
                 // Effects of other joints hardly notice: they are looked at in the end.

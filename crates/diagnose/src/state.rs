@@ -6,11 +6,11 @@ use super::data::{Data, ModelTorques};
 use super::floor::NoiseFloor;
 use super::hypothesis::{Hypothesis, Part};
 use super::problem::{Fitted, Found, Problem};
-use super::search::{Search, SearchOptions};
+use super::search::Search;
 use super::weighing::{Placed, Weighing};
 pub(super) use crate::policy::state::MOST_Z;
 use denavit_evidence::{Terms, policy};
-use denavit_measure::{LogIndex, Split};
+use denavit_measure::Split;
 
 /// An effect that was taken into the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,8 +69,7 @@ impl<'a> Setting<'a> {
     /// The model with effects that were found by all logs, fitted to those for training alone.
     pub(super) fn state(&self, parts: &[Part], z: &[f64]) -> State {
         let weighing = Weighing::new(vec![self.data.train], self.effects(&self.given), z);
-        let (all, options) = (self.candidates.len(), SearchOptions::default());
-        let search = Search::new(weighing, all, options, &mut |_| true);
+        let search = Search::new(weighing, self.candidates.len(), 0, &mut |_| true);
         let parts = parts.iter().map(|part| search.weighing.part(&part.placed)).collect();
         let fitted = search.settled(parts, None);
         self.fitted_state(&search.weighing, &fitted)
@@ -87,12 +86,8 @@ impl<'a> Setting<'a> {
                 beliefs.iter().map(|belief| belief.std).collect()
             })
             .collect();
-        for (place, part) in fitted.parts.iter().enumerate() {
-            let candidate = part.placed.candidate;
-            let parameters = self.candidates[candidate].law.parameters();
-            let values = fitted.values(place).into_iter().zip(parameters);
-            let values = values.map(|(value, one)| value.clamp(one.bounds[0], one.bounds[1]));
-            taken.push(Taken { candidate, values: values.collect() });
+        for place in 0..fitted.parts.len() {
+            taken.push(fitted.taken(place, self.candidates));
             deviations.push(fitted.deviations(place));
         }
         let torques = self.data.map(|data| data.model_torques(&z));
@@ -147,12 +142,7 @@ impl Data<'_> {
     fn left(&self, laws: &[Fitted<'_>], z: &[f64], torques: &[ModelTorques]) -> Vec<f64> {
         let mut residual = self.residual_of(z);
         for fitted in laws {
-            for (log, torques) in torques.iter().enumerate() {
-                let signals = &self.signals[log];
-                let motion = torques.motion(self.nominal, signals);
-                let response = fitted.law.response(motion, &fitted.values);
-                self.in_rows(LogIndex(log), signals, &response).subtract_from(&mut residual);
-            }
+            self.response(fitted.law, &fitted.values, torques).subtract_from(&mut residual);
         }
         residual
     }

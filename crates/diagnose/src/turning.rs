@@ -17,29 +17,10 @@ use denavit_evidence::policy;
 use denavit_measure::JointIndex;
 use std::ops::Range;
 
-/// How far a torque is not known [N m, N].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Unsure {
-    /// Since its rate is not known better than corners of the filter leave it.
-    pub(super) corner: f64,
-    /// Since the drive rests.
-    pub(super) rest: f64,
-}
-
-impl Unsure {
-    /// The deviation of a row, with a share of that of corners.
-    pub(super) fn deviation(self, share: f64) -> f64 {
-        (share * self.corner).hypot(self.rest)
-    }
-}
-
-/// For each row how far its torque is not known by the model and by laws.
-pub(super) fn turning(
-    data: &Data<'_>,
-    torques: &[ModelTorques],
-    laws: &[Fitted<'_>],
-) -> Vec<Unsure> {
-    let mut unsure = vec![Unsure::default(); data.rows()];
+/// For each row how far its torque is not known by the model and by laws [N m, N]: since corners of
+/// the filter leave rates uncertain, and since drives rest.
+pub(super) fn turning(data: &Data<'_>, torques: &[ModelTorques], laws: &[Fitted<'_>]) -> Vec<f64> {
+    let mut unsure = vec![0.0; data.rows()];
     for (log, (signals, torques)) in data.signals.iter().zip(torques).enumerate() {
         let all = |moved: &Signals| {
             let total = torques_of(data.nominal, moved, &torques.phi);
@@ -59,15 +40,17 @@ pub(super) fn turning(
             let sizes: Vec<f64> =
                 bends[stretch.equation].iter().map(|b| BETWEEN * b.abs()).collect();
             let apart = signals.rows_of(&sizes);
-            let rows = &mut unsure[stretch.first..stretch.first + stretch.rows];
+            // What is unsure of the filter's input shifts where it has no output.
+            let mut corners = with_ringing(&apart);
             if let [Some(a), Some(b)] = rests.each_ref().map(|torques| torques.as_ref()) {
                 let [a, b] = [a, b].map(|torques| signals.rows_of(&torques[stretch.equation]));
-                let both = a.iter().zip(&b).map(|(a, b)| (a - b).abs());
-                rows.iter_mut().zip(both).for_each(|(row, rest)| row.rest = rest);
+                let both = a.iter().zip(&b).map(|(a, b)| a - b);
+                corners
+                    .iter_mut()
+                    .zip(both)
+                    .for_each(|(corner, rest)| *corner = corner.hypot(rest));
             }
-            // What is unsure of the filter's input shifts where it has no output.
-            let corners = with_ringing(&apart);
-            rows.iter_mut().zip(corners).for_each(|(row, corner)| row.corner = corner);
+            unsure[stretch.range()].copy_from_slice(&corners);
         }
     }
     unsure

@@ -7,7 +7,7 @@ use super::nominal::Nominal;
 use super::spectra::Spectra;
 use super::state::{Effects, Taken};
 use denavit_evidence::{Base, Spectrum, Terms, Unpredicted, policy};
-use denavit_measure::{JointIndex, LogIndex};
+use denavit_measure::JointIndex;
 
 /// An effect near values of its parameters, with what is believed of them.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,16 +97,8 @@ impl<'a> Weighing<'a> {
     /// What an effect does to all sets.
     pub(super) fn responses(&self, taken: &Taken) -> Vec<RowResponse> {
         let law = self.candidates[taken.candidate].law.as_ref();
-        let of_set = |(data, torques): (&&Data<'a>, &Vec<ModelTorques>)| {
-            let mut all = RowResponse::default();
-            for (log, torques) in torques.iter().enumerate() {
-                let signals = &data.signals[log];
-                let response = law.response(torques.motion(data.nominal, signals), &taken.values);
-                all.append(data.in_rows(LogIndex(log), signals, &response));
-            }
-            all
-        };
-        self.sets.iter().zip(&self.torques).map(of_set).collect()
+        let sets = self.sets.iter().zip(&self.torques);
+        sets.map(|(data, torques)| data.response(law, &taken.values, torques)).collect()
     }
 
     /// The spectra of an effect's torque and of its gradient.

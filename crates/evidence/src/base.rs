@@ -2,7 +2,7 @@
 
 use crate::layout::{Layout, Spectrum};
 use crate::policy;
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DMatrixViewMut, DVector, SymmetricEigen};
 use std::ops::Range;
 
 /// Data with the columns of everything that the model itself is not sure of.
@@ -30,12 +30,7 @@ impl Base {
         let parameters = own.len();
         let of_channel = |channel: usize| {
             let mut columns = DMatrix::zeros(layout.rows(channel), parameters);
-            for (place, spectrum) in own.iter().enumerate() {
-                let filled = spectrum.get(channel).filter(|one| !one.is_empty());
-                if let Some(column) = filled {
-                    columns.column_mut(place).copy_from_slice(column);
-                }
-            }
+            fill(&mut columns.columns_mut(0, parameters), own, channel);
             columns
         };
         let own: Vec<DMatrix<f64>> = (0..layout.channels()).map(of_channel).collect();
@@ -67,6 +62,19 @@ impl Base {
     /// The factors of the own columns that have those of the combinations; others stay 0.
     pub(crate) fn own_factors(&self, combinations: &[f64]) -> Vec<f64> {
         (&self.basis * DVector::from_column_slice(combinations)).as_slice().to_vec()
+    }
+}
+
+/// Fills columns with the rows that spectra have in a channel.
+pub(crate) fn fill<'s>(
+    columns: &mut DMatrixViewMut<'_, f64>,
+    spectra: impl IntoIterator<Item = &'s Spectrum>,
+    channel: usize,
+) {
+    for (mut column, spectrum) in columns.column_iter_mut().zip(spectra) {
+        if let Some(rows) = spectrum.get(channel).filter(|rows| !rows.is_empty()) {
+            column.copy_from_slice(rows);
+        }
     }
 }
 

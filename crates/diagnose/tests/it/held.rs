@@ -1,22 +1,23 @@
 //! Entries of z that are held, against least squares without their columns.
 
 use super::search::{puma, puma_log};
-use denavit_diagnose::{Data, Filters, Nominal, Problem, Signals, Uncertainty};
+use denavit_diagnose::{Data, Filters, Nominal, Problem, Signals};
 use nalgebra::{DMatrix, DVector};
 
 #[test]
 fn entries_that_are_held_are_least_squares_without_them() {
     let model = puma();
-    let nominal = Nominal::new(&model, Uncertainty::default());
+    let nominal = Nominal::new(&model);
     let phi = nominal.phi(&vec![0.5; nominal.len()]);
-    let signals = Signals::new(puma_log(&model, &phi.axes), Filters::new(0.002, 0.03));
+    let filters = Filters { motion_hz: 15.0, torque_hz: 7.5 };
+    let signals = Signals::new(puma_log(&model, &phi.axes), filters);
     let data = Data::new(&nominal, vec![signals.expect("long enough")]);
     let deviation: Vec<f64> = (0..data.rows()).map(|row| 0.1 + (row % 7) as f64).collect();
     let width = data.columns.len();
     let mut held = vec![None; width];
     (held[3], held[10], held[width - 1]) = (Some(2.5), Some(-3.0), Some(0.25));
     let torques = data.model_torques(&vec![0.0; width]);
-    let found = Problem::new(&data, &deviation, &[]).holding(&held).at(&[], &torques);
+    let found = Problem::new(&data, &deviation).holding(&held).fit(&[], &torques);
 
     let free: Vec<usize> = (0..width).filter(|place| held[*place].is_none()).collect();
     let given: Vec<f64> = held.iter().map(|z| z.unwrap_or(0.0)).collect();

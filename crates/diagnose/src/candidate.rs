@@ -96,12 +96,8 @@ fn values_of(
     let is_anywhere = is_position && low.is_infinite() && high.is_infinite();
     let is_limit = !parameter.linear && ["1/(N m)", "1/N"].contains(&parameter.unit.as_str());
     let values: Vec<f64> = match (parameter.nominal, range, largest) {
-        (Some(off), ..) if parameter.linear && parameter.start.is_empty() => {
-            return vec![(off, is_position.then_some(policy::ANGLE))];
-        }
         (Some(off), ..) if parameter.start.is_empty() => {
-            let deviation = if is_position { Some(policy::ANGLE) } else { None };
-            return vec![(off, deviation)];
+            return vec![(off, is_position.then_some(policy::ANGLE))];
         }
         (_, _, Some(largest)) if is_limit && largest > 0.0 => {
             LIMITS.iter().map(|share| 1.0 / (share * largest)).collect()

@@ -3,7 +3,7 @@
 use super::known::weights;
 use super::law::{Law, Motion, derivative};
 use super::nominal::{Nominal, Phi};
-use super::rows::{LogRows, PerJoint, behind_springs, torques};
+use super::rows::{LogRows, PerJoint, behind_springs, of_axes, torques};
 use super::signals::Signals;
 use super::turning::{PER_JOINT, settle, unnamed};
 pub(super) use crate::policy::data::SPRING_ZERO;
@@ -274,7 +274,7 @@ impl ModelTorques {
     pub(super) fn new(nominal: &Nominal<'_>, signals: &Signals, z: &[f64]) -> Self {
         let (phi, numbers) = (nominal.phi(z), nominal.numbers(z));
         let drives = Drive::all(nominal.model, &phi.drives);
-        let load = torques(nominal, signals, &nominal.load_phi(z));
+        let load = of_axes(nominal, signals, &phi.loads, true);
         let rate = |load: &Vec<f64>| derivative(load, signals.step_s);
         let load_rate = load.iter().map(rate).collect();
         let total = torques(nominal, signals, &phi);

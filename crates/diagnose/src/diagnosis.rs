@@ -3,7 +3,7 @@
 use super::alias::ExactAliases;
 use super::candidate::Candidate;
 use super::columns::misread;
-use super::curve::{Curve, curves};
+use super::curve::{Curve, LoggedMotion, curves, logged};
 use super::data::Data;
 use super::effects_found::{
     FoundEffect, GivenEffect, driven_names, found_effects, given_effects, separate, tell_aliases,
@@ -14,7 +14,6 @@ use super::excitation::{Visible, visible};
 use super::floor::{NoiseFloor, floors};
 use super::gap::{Gap, share_closed};
 use super::leftover::{Leftover, leftovers};
-use super::logged::{LoggedMotion, logged};
 use super::nominal::{Nominal, NominalAt};
 use super::regime::{Where, where_left};
 use super::rounds::Found;

@@ -1,6 +1,7 @@
 //! Effects of the catalogue as laws on the torques of a robot's joints.
 
 use super::floor::rms;
+use super::given::Belief;
 use super::law::{Law, Motion, Response};
 use super::reading_law::deflections;
 use crate::policy::joint_law::{ALL_GIVEN, OF_NOISE};
@@ -40,6 +41,8 @@ pub(super) struct JointLaw {
     /// The other joint, for laws of a pair.
     other: Option<JointIndex>,
     acts: Acts,
+    /// What the model says of its parameters.
+    pub(super) beliefs: Vec<Belief>,
 }
 
 /// The samples of a joint in a motion: of its drive, which may be before a spring.
@@ -84,7 +87,7 @@ impl JointLaw {
         };
         // How long a joint falls through a gap is not in proportion to the gap.
         law.parameters.iter_mut().for_each(|one| one.linear &= acts != Acts::Gap);
-        Self { law, joint, other, acts }
+        Self { law, joint, other, acts, beliefs: Vec::new() }
     }
 
     /// What it adds to torques.
@@ -183,6 +186,10 @@ fn crosses_gap(law: &EffectLaw) -> bool {
 impl Law for JointLaw {
     fn parameters(&self) -> &[LawParameter] {
         &self.law.parameters
+    }
+
+    fn beliefs(&self) -> &[Belief] {
+        &self.beliefs
     }
 
     fn follows_accelerations(&self) -> bool {

@@ -215,7 +215,10 @@ impl<'a> Nominal<'a> {
     }
 
     fn phi_of(&self, theta: &[f64]) -> Phi {
-        let drives = self.only(theta, StandardParameter::is_of_joint);
+        let own = |(value, standard): (&f64, &StandardParameter)| {
+            if standard.is_of_joint() { *value } else { 0.0 }
+        };
+        let drives: Vec<f64> = theta.iter().zip(&self.model.standard).map(own).collect();
         let loads: Vec<f64> = theta.iter().zip(&drives).map(|(all, own)| all - own).collect();
         Phi {
             axes: self.model.axes_of_standard(theta),
@@ -223,23 +226,6 @@ impl<'a> Nominal<'a> {
             loads: self.model.axes_of_standard(&loads),
             springs: vec![0.0; self.springs.len()],
         }
-    }
-
-    /// theta0 with 0 for what is not asked for.
-    fn only(&self, theta: &[f64], is_asked: impl Fn(&StandardParameter) -> bool) -> Vec<f64> {
-        let of = |(value, standard): (&f64, &StandardParameter)| {
-            if is_asked(standard) { *value } else { 0.0 }
-        };
-        theta.iter().zip(&self.model.standard).map(of).collect()
-    }
-
-    /// phi of z without friction, offsets and rotors: what moves and carries the bodies, and what a
-    /// transmission passes on.
-    pub fn load_phi(&self, z: &[f64]) -> Phi {
-        let Phi { loads, mut drives, mut springs, .. } = self.phi(z);
-        drives.fill(0.0);
-        springs.fill(0.0);
-        Phi { axes: loads.clone(), drives, loads, springs }
     }
 
     /// What a unit of each entry of z adds to phi.

@@ -96,13 +96,6 @@ pub(crate) mod followed {
     pub(crate) const SETTLED: f64 = 1e-6;
 }
 
-/// `given.rs`: Effects that the model has: they are not searched, but estimated again within what
-/// the model says of their parameters.
-pub(crate) mod given {
-    /// Deviations beyond which a parameter is not moved.
-    pub(crate) const MOST: f64 = 3.0;
-}
-
 /// `joint_law.rs`: Effects of the catalogue as laws on the torques of a robot's joints.
 pub(crate) mod joint_law {
     /// A drive that lacks more than this share of what was demanded does not give what was
@@ -209,7 +202,7 @@ pub(crate) mod standstill {
 /// judged with others.
 pub(crate) mod state {
     /// Entries of z that are further from 0 say that the model's own numbers are off by more than
-    /// it states; experiments do not move them beyond.
+    /// it states. Experiments, and parameters of effects that the model has, do not go beyond.
     pub(crate) const MOST_Z: f64 = 3.0;
 }
 

@@ -103,34 +103,31 @@ impl<'a> Data<'a> {
             data.signals.iter().map(|signals| unnamed(nominal, signals, &given)).collect();
         let weights: Vec<PerJoint> =
             data.signals.iter().map(|signals| weights(nominal, signals, &given)).collect();
-        for joint in 0..joints {
-            for (log, rows) in rows.iter().enumerate() {
-                let Some(target) = &rows.target[joint] else { continue };
-                let (first, count) = (data.residual.len(), target.len());
-                let equation = joint;
+        for at in (0..joints).map(JointIndex) {
+            let joint = at.0;
+            for (log, own) in rows.iter().enumerate() {
+                let Some(target) = &own.target[joint] else { continue };
+                let (first, rows) = (data.residual.len(), target.len());
                 data.stretches.push(Stretch {
                     log: LogIndex(log),
-                    joint: JointIndex(joint),
-                    equation,
+                    joint: at,
+                    equation: joint,
                     first,
-                    rows: count,
+                    rows,
                 });
-                let computed = rows.torque(nominal, JointIndex(joint), &given.axes);
+                let computed = own.torque(nominal, at, &given.axes);
                 data.residual.extend(target.iter().zip(computed).map(|(a, b)| a - b));
                 data.torque.extend(data.signals[log].torque[joint].iter().flatten());
                 data.weights.extend(&weights[log][joint]);
                 for (column, direction) in data.columns.iter_mut().zip(&directions) {
-                    column.extend(rows.torque(nominal, JointIndex(joint), &direction.axes));
+                    column.extend(own.torque(nominal, at, &direction.axes));
                 }
                 data.columns[directions.len()].extend(&time[log][joint]);
-                for (place, column) in data.columns[directions.len() + 1..].iter_mut().enumerate() {
-                    let own = (place / PER_JOINT == joint).then_some(place % PER_JOINT);
-                    match own {
-                        Some(own) => {
-                            column.extend(data.signals[log].rows_of(&unnamed[log][joint][own]));
-                        }
-                        None => column.resize(column.len() + count, 0.0),
-                    }
+                // What is too small for a name is that of one joint each.
+                data.columns.iter_mut().for_each(|column| column.resize(first + rows, 0.0));
+                let columns = data.columns[directions.len() + 1 + PER_JOINT * joint..].iter_mut();
+                for (column, unnamed) in columns.zip(&unnamed[log][joint]) {
+                    column[first..].copy_from_slice(&data.signals[log].rows_of(unnamed));
                 }
             }
         }
@@ -149,13 +146,8 @@ impl<'a> Data<'a> {
                 let Some([deflection, _]) = self.signals[log].deflection(joint) else { continue };
                 let deflection = self.signals[log].rows_of(&deflection);
                 let (first, count) = (self.residual.len(), deflection.len());
-                self.stretches.push(Stretch {
-                    log: LogIndex(log),
-                    joint,
-                    equation,
-                    first,
-                    rows: count,
-                });
+                let log = LogIndex(log);
+                self.stretches.push(Stretch { log, joint, equation, first, rows: count });
                 let passed: Vec<f64> = deflection.iter().map(|d| spring.stiffness * d).collect();
                 let computed = rows.torque(nominal, joint, &given.loads);
                 let left = rows.unknown(joint, passed.clone());

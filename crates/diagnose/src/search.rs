@@ -90,7 +90,7 @@ impl<'a> Search<'a> {
     /// The best of hypotheses of one more effect that is worth it, by its plainest name.
     pub(super) fn chosen(&self, now: &Hypothesis, all: Vec<Hypothesis>) -> Option<Hypothesis> {
         let best = all.iter().find(|one| self.is_worth(now, one, one.parts.len() - 1))?;
-        Some(self.plainest(best, best.parts.len() - 1, &all).clone())
+        Some(self.plainest(best, best.parts.len() - 1, all.iter()).clone())
     }
 
     /// Of hypotheses that have another effect in one place: the best of those that are plainer than
@@ -99,9 +99,9 @@ impl<'a> Search<'a> {
         &self,
         best: &'h Hypothesis,
         place: usize,
-        all: &'h [Hypothesis],
+        all: impl Iterator<Item = &'h Hypothesis>,
     ) -> &'h Hypothesis {
-        let plain = all.iter().filter(|one| self.is_plainer(one, best, place));
+        let plain = all.filter(|one| self.is_plainer(one, best, place));
         plain.max_by(|a, b| a.posterior.total_cmp(&b.posterior)).unwrap_or(best)
     }
 

@@ -50,33 +50,24 @@ const PER_POSITION: [&str; 2] = ["1/rad", "1/m"];
 /// Most points from which one law's parameters are searched.
 const MOST_STARTS: usize = 48;
 
-/// Where the search of a law's parameters begins, and what is believed of them there.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Start {
-    /// Their values.
-    pub values: Vec<f64>,
-    /// How far each may be from that; none of amplitudes, whose size is that of torques.
-    pub deviations: Vec<Option<f64>>,
-}
+/// Where the search of a law's parameters begins: their values, and how far each may be from that;
+/// none of amplitudes, whose size is that of torques.
+pub(super) type Start = Vec<(f64, Option<f64>)>;
 
 /// Where searches of a law's parameters begin: what it is linear in, where it is off; every
 /// combination of the values that the other parameters begin with, each within half the distance
 /// to its neighbours. Positions without bounds begin within `range`, what the joint covers; one
 /// over a limit of torques at limits below the `largest`.
-pub fn starts(
+pub(super) fn starts(
     parameters: &[LawParameter],
     range: Option<[f64; 2]>,
     largest: Option<f64>,
 ) -> Vec<Start> {
-    let mut all = vec![Start { values: Vec::new(), deviations: Vec::new() }];
+    let mut all: Vec<Start> = vec![Vec::new()];
     for parameter in parameters {
         let values = values_of(parameter, range, largest);
         let longer = |start: &Start| -> Vec<Start> {
-            let longer = |(value, deviation): &(f64, Option<f64>)| Start {
-                values: [start.values.as_slice(), &[*value]].concat(),
-                deviations: [start.deviations.as_slice(), &[*deviation]].concat(),
-            };
-            values.iter().map(longer).collect()
+            values.iter().map(|own| [start.as_slice(), &[*own]].concat()).collect()
         };
         all = all.iter().flat_map(longer).collect();
     }
@@ -163,10 +154,12 @@ mod tests {
         let place = of("rad", None, open, false);
         let within = starts(&[stiffness.clone(), place.clone()], Some([1.0, 3.0]), None);
         assert_eq!(within.len(), PLACES.len());
-        assert!(within.iter().all(|one| one.values[0] == 0.0 && one.deviations[0].is_none()));
-        assert!(within.iter().all(|one| 1.0 < one.values[1] && one.values[1] < 3.0));
+        assert!(within.iter().all(|one| one[0] == (0.0, None)));
+        assert!(within.iter().all(|one| 1.0 < one[1].0 && one[1].0 < 3.0));
         let only = |parameters: &[LawParameter], range| {
-            starts(parameters, range, None).into_iter().map(|one| one.values).collect::<Vec<_>>()
+            let all = starts(parameters, range, None).into_iter();
+            let values = |one: Start| one.into_iter().map(|(value, _)| value).collect();
+            all.map(values).collect::<Vec<Vec<f64>>>()
         };
         assert_eq!(only(&[stiffness.clone(), place], None), [[0.0, 5.0]]);
         let bounded = of("rad", None, [0.0, 9.0], false);

@@ -14,7 +14,7 @@ use super::excitation::{Visible, visible};
 use super::floor::{NoiseFloor, floors};
 use super::gap::{Gap, share_closed};
 use super::leftover::{Leftover, leftovers};
-use super::nominal::{Nominal, NominalAt};
+use super::nominal::Nominal;
 use super::regime::{Where, where_left};
 use super::rounds::Found;
 use super::search::{Search, Step};
@@ -270,10 +270,8 @@ impl Told<'_, '_> {
     fn motion_gaps(&self, moved: &Moved<'_>) -> Result<MotionGaps, Error> {
         let Self { setting, filters, before, after, .. } = self;
         let of = |logs: &[MeasuredLog]| -> Result<[MotionGap; 2], Error> {
-            let [before, after] = [before, after].map(|State { taken, z, .. }| {
-                let at = NominalAt { nominal: setting.data.train.nominal, z };
-                moved.gap(logs, filters.motion_hz, at, setting.effects(taken))
-            });
+            let of = |state| moved.gap(logs, filters.motion_hz, setting, state);
+            let [before, after] = [before, after].map(of);
             Ok([before?, after?])
         };
         Ok(MotionGaps { train: of(&moved.logs.train)?, held_out: of(&moved.logs.held_out)? })

@@ -57,7 +57,7 @@ mod weighing;
 mod worth;
 
 pub use alias::{ExactAliases, Named};
-pub use candidate::{Candidate, Start, starts};
+pub use candidate::Candidate;
 pub use catalogue::{candidates, spring_candidates};
 pub use curve::{Curve, LoggedMotion};
 pub use data::{Data, ModelTorques, RowResponse, Stretch};
@@ -75,7 +75,7 @@ pub use law_curve::{LawCurve, Quantity};
 pub use leftover::Leftover;
 pub use nominal::{Nominal, Phi, Uncertain};
 pub use problem::{Fitted, Problem};
-pub use regime::{Part, Regime, Where};
+pub use regime::{Part, Where};
 pub use rows::PerJoint;
 pub use search::Step;
 pub use signals::{Filters, Signals};

@@ -47,15 +47,6 @@ pub struct Nominal<'a> {
     pub(super) usual: Vec<[f64; 2]>,
 }
 
-/// The nominal model with its own numbers where they are.
-#[derive(Clone, Copy)]
-pub(super) struct NominalAt<'a> {
-    /// The model.
-    pub(super) nominal: &'a Nominal<'a>,
-    /// What its numbers are off, in their deviations.
-    pub(super) z: &'a [f64],
-}
-
 /// What the torques are linear in.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Phi {

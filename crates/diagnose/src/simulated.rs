@@ -4,8 +4,8 @@
 //! with angle and rate of these, and are moved by the motors' torques.
 
 use super::error::Cause;
-use super::nominal::{Nominal, NominalAt};
-use super::state::{Effects, Taken};
+use super::nominal::Nominal;
+use super::state::{Setting, State, Taken};
 use denavit_codegen::effect::{Effect, read_estimated_model, read_model};
 use denavit_codegen::model::{LinkId, Robot};
 use denavit_codegen::number::parse_decimal;
@@ -58,12 +58,9 @@ const MOST_WINDOWS: usize = 40;
 impl Moved<'_> {
     /// The robot with effects at their values, and with the nominal model's numbers moved by z;
     /// whether they are.
-    fn robot(
-        &self,
-        at: NominalAt<'_>,
-        Effects { candidates, taken }: Effects<'_>,
-    ) -> Result<(Robot, bool), Cause> {
-        let NominalAt { nominal, z } = at;
+    fn robot(&self, setting: &Setting<'_>, state: &State) -> Result<(Robot, bool), Cause> {
+        let (nominal, candidates) = (setting.data.train.nominal, setting.candidates);
+        let State { taken, z, .. } = state;
         let values = |one: &Taken| -> EffectValues<'_> {
             let both = candidates[one.candidate].law.parameters().iter().zip(&one.values);
             both.map(|(parameter, value)| (parameter.name.as_str(), *value, None)).collect()
@@ -83,7 +80,7 @@ impl Moved<'_> {
         let moved = moved_numbers(nominal, z, &with).ok_or_else(no_place)?;
         let name = "the model";
         let moved = read_estimated_model(name, moved.as_bytes(), self.effects).ok();
-        let moved = moved.and_then(|robot| with_springs(robot, at));
+        let moved = moved.and_then(|robot| with_springs(robot, nominal, z));
         if let Some(moved) = moved {
             return Ok((moved, true));
         }
@@ -97,12 +94,13 @@ impl Moved<'_> {
         &self,
         logs: &[MeasuredLog],
         cutoff_hz: f64,
-        at: NominalAt<'_>,
-        effects: Effects<'_>,
+        setting: &Setting<'_>,
+        state: &State,
     ) -> Result<MotionGap, Cause> {
-        let (mut robot, is_estimated) = self.robot(at, effects)?;
-        let model = at.nominal.model;
-        let zeros = drive_by_motors(&mut robot, at, logs)?;
+        let (mut robot, is_estimated) = self.robot(setting, state)?;
+        let nominal = setting.data.train.nominal;
+        let model = nominal.model;
+        let zeros = drive_by_motors(&mut robot, nominal, &state.z, logs)?;
         let laws =
             apart(&robot, self.effects).map_err(|error| Cause::NotMoved(error.to_string()))?;
         let mut plant = plant_of(&robot, &[]).map_err(Cause::Plant)?;
@@ -146,8 +144,7 @@ impl Moved<'_> {
 }
 
 /// The robot with the stiffness of its springs as z has it; none if that makes no spring.
-fn with_springs(mut robot: Robot, at: NominalAt<'_>) -> Option<Robot> {
-    let NominalAt { nominal, z } = at;
+fn with_springs(mut robot: Robot, nominal: &Nominal<'_>, z: &[f64]) -> Option<Robot> {
     let links: Vec<LinkId> = robot.joints().map(|(link, _)| link).collect();
     for (spring, stiffness) in nominal.springs.iter().zip(nominal.phi(z).springs) {
         let share = stiffness / spring.stiffness;
@@ -167,10 +164,10 @@ fn with_springs(mut robot: Robot, at: NominalAt<'_>) -> Option<Robot> {
 /// on the torque that was measured of them.
 fn drive_by_motors(
     robot: &mut Robot,
-    at: NominalAt<'_>,
+    nominal: &Nominal<'_>,
+    z: &[f64],
     logs: &[MeasuredLog],
 ) -> Result<Option<Vec<f64>>, Cause> {
-    let NominalAt { nominal, z } = at;
     let links: Vec<LinkId> = robot.joints().map(|(link, _)| link).collect();
     let is_measured = |joint: usize| logs.iter().any(|log| log.joints[joint].motor.is_some());
     if !(0..links.len()).any(is_measured) {

@@ -188,12 +188,18 @@ pub fn diagnose(
     if let Some((robot, seed)) = request.experiment {
         separate(&setting, robot, seed, &after, filters, &mut effects);
     }
-    let visible = visible(&search, &found.after);
+    let states = [&before, &after];
     let leftovers = leftovers(&search.weighing.spectra, &found.after);
-    let moved = request.moved;
-    let told = Told { setting: &setting, moved, filters, found, before, after };
-    let mut diagnosis = told.diagnosis(effects, visible, leftovers);
-    judge(&mut diagnosis, &setting, &told.found, &told.after, &misread);
+    let unnamed = leftovers.iter().filter(|one| one.share > policy::LEFT);
+    let mut diagnosis = Diagnosis {
+        visible: visible(&search, &found.after),
+        structures: unnamed.filter_map(|one| describe(&setting, &after, one.equation)).collect(),
+        leftovers,
+        effects,
+        motion: request.moved.map(|moved| motion_gaps(moved, &setting, filters, states)),
+        ..told(&setting, filters, &found, states)
+    };
+    judge(&mut diagnosis, &setting, &found, &after, &misread);
     Ok(diagnosis)
 }
 
@@ -205,77 +211,56 @@ fn null(sets: &[&Data<'_>], given: Effects<'_>) -> Vec<f64> {
     weighed.own[..columns].to_vec()
 }
 
-/// What was found, with what it is told of.
-struct Told<'t, 'a> {
-    setting: &'t Setting<'a>,
-    moved: Option<&'a Moved<'a>>,
+/// What two states say of the logs, before and after effects were found.
+fn told(
+    setting: &Setting<'_>,
     filters: Filters,
-    found: Found,
-    before: State,
-    after: State,
+    found: &Found,
+    [before, after]: [&State; 2],
+) -> Diagnosis {
+    let Setting { data, floors, .. } = setting;
+    let nominal = data.train.nominal;
+    let filter_s = 0.35 / filters.torque_hz;
+    let left = |State { residual, torques, .. }: &State| {
+        where_left(data.train, &residual.train, &torques.train, floors.train, filter_s)
+    };
+    let given = data.map(|data| setting.as_given(data));
+    let [of_before, of_after] = [before, after].map(|state| &state.residual);
+    Diagnosis {
+        verdict: Verdict::CannotTell,
+        reasons: Vec::new(),
+        places: (0..nominal.equations()).map(|at| nominal.equation_name(at)).collect(),
+        before: left(before),
+        after: left(after),
+        given: given_effects(setting, after),
+        effects: Vec::new(),
+        visible: Vec::new(),
+        leftovers: Vec::new(),
+        structures: Vec::new(),
+        is_left_at_reversals: false,
+        steps: found.steps.clone(),
+        train: Gaps::new(data.train, floors.train, &given.train, &of_after.train),
+        held_out: Gaps::new(data.held_out, floors.held_out, &given.held_out, &of_after.held_out),
+        motion: None,
+        curves: curves(data.held_out, [&given.held_out, &of_before.held_out, &of_after.held_out]),
+        logged: logged(data.held_out),
+        filters,
+        driven: [before, after].map(|state| driven_names(setting, state)),
+    }
 }
 
-impl Told<'_, '_> {
-    fn diagnosis(
-        &self,
-        effects: Vec<FoundEffect>,
-        visible: Vec<Visible>,
-        leftovers: Vec<Leftover>,
-    ) -> Diagnosis {
-        let Self { setting, moved, filters, found, before, after } = self;
-        let Setting { data, floors, .. } = setting;
-        let nominal = data.train.nominal;
-        let gaps = |data: &Data<'_>, floors: &[NoiseFloor], left: &[f64]| {
-            Gaps::new(data, floors, &setting.as_given(data), left)
-        };
-        let filter_s = 0.35 / filters.torque_hz;
-        let left = |State { residual, torques, .. }: &State| {
-            where_left(data.train, &residual.train, &torques.train, floors.train, filter_s)
-        };
-        let has_structure = |one: &&Leftover| one.share > policy::LEFT;
-        let unnamed = leftovers.iter().filter(has_structure);
-        let structures: Vec<Structure> =
-            unnamed.filter_map(|one| describe(setting, after, one.equation)).collect();
-        Diagnosis {
-            verdict: Verdict::CannotTell,
-            reasons: Vec::new(),
-            places: (0..nominal.equations()).map(|at| nominal.equation_name(at)).collect(),
-            before: left(before),
-            after: left(after),
-            given: given_effects(setting, after),
-            effects,
-            train: gaps(data.train, floors.train, &after.residual.train),
-            held_out: gaps(data.held_out, floors.held_out, &after.residual.held_out),
-            visible,
-            leftovers,
-            structures,
-            is_left_at_reversals: false,
-            curves: curves(
-                data.held_out,
-                [
-                    &setting.as_given(data.held_out),
-                    &before.residual.held_out,
-                    &after.residual.held_out,
-                ],
-            ),
-            logged: logged(data.held_out),
-            motion: moved.map(|moved| self.motion_gaps(moved)),
-            filters: *filters,
-            driven: [before, after].map(|state| driven_names(setting, state)),
-            steps: found.steps.clone(),
-        }
-    }
-
-    /// The gaps of the models before and after in motion.
-    fn motion_gaps(&self, moved: &Moved<'_>) -> Result<MotionGaps, Error> {
-        let Self { setting, filters, before, after, .. } = self;
-        let of = |logs: &[MeasuredLog]| -> Result<[MotionGap; 2], Error> {
-            let of = |state| moved.gap(logs, filters.motion_hz, setting, state);
-            let [before, after] = [before, after].map(of);
-            Ok([before?, after?])
-        };
-        Ok(MotionGaps { train: of(&moved.logs.train)?, held_out: of(&moved.logs.held_out)? })
-    }
+/// The gaps of the models before and after in motion.
+fn motion_gaps(
+    moved: &Moved<'_>,
+    setting: &Setting<'_>,
+    filters: Filters,
+    states: [&State; 2],
+) -> Result<MotionGaps, Error> {
+    let of = |logs: &[MeasuredLog]| -> Result<[MotionGap; 2], Error> {
+        let [before, after] = states.map(|one| moved.gap(logs, filters.motion_hz, setting, one));
+        Ok([before?, after?])
+    };
+    Ok(MotionGaps { train: of(&moved.logs.train)?, held_out: of(&moved.logs.held_out)? })
 }
 
 /// How often a search begins again with other numbers of the model, at most.

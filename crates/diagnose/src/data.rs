@@ -14,68 +14,68 @@ use std::ops::Range;
 
 /// A stretch of rows: those of one equation in one log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Stretch {
+pub(super) struct Stretch {
     /// The log.
-    pub log: LogIndex,
+    pub(super) log: LogIndex,
     /// The joint.
-    pub joint: JointIndex,
+    pub(super) joint: JointIndex,
     /// The equation: of the torque of that joint, or after all joints that of its spring.
-    pub equation: usize,
+    pub(super) equation: usize,
     /// The first of its rows.
-    pub first: usize,
+    pub(super) first: usize,
     /// Their number.
-    pub rows: usize,
+    pub(super) rows: usize,
 }
 
 impl Stretch {
     /// Its rows among all.
-    pub fn range(&self) -> Range<usize> {
+    pub(super) fn range(&self) -> Range<usize> {
         self.first..self.first + self.rows
     }
 }
 
 /// Logs with the columns of everything that the nominal model is not sure of.
 #[derive(Clone, Debug)]
-pub struct Data<'a> {
+pub(super) struct Data<'a> {
     /// The nominal model.
-    pub nominal: &'a Nominal<'a>,
+    pub(super) nominal: &'a Nominal<'a>,
     /// The logs.
-    pub signals: Vec<Signals>,
+    pub(super) signals: Vec<Signals>,
     /// All rows: joint by joint, then spring by spring, log by log.
-    pub stretches: Vec<Stretch>,
+    pub(super) stretches: Vec<Stretch>,
     /// Torque less what the model gives with z = 0, per row; of a spring what it passes on less
     /// what its joint takes [N m, N].
-    pub residual: Vec<f64>,
+    pub(super) residual: Vec<f64>,
     /// For each entry of z its column: the numbers of the model, the time between torque and
     /// motion, for each joint what is too small for a name, and for each spring its stiffness and
     /// the zero of its deflection.
-    pub columns: Vec<Vec<f64>>,
+    pub(super) columns: Vec<Vec<f64>>,
     /// The torque of every row, filtered: measured, or by the deflection of a spring [N m, N].
-    pub torque: Vec<f64>,
+    pub(super) torque: Vec<f64>,
     /// What every row counts, from 0 to 1.
-    pub weights: Vec<f64>,
+    pub(super) weights: Vec<f64>,
 }
 
 /// Torques of the model at the samples of one log.
 #[derive(Clone, Debug)]
-pub struct ModelTorques {
+pub(super) struct ModelTorques {
     /// phi of the model's parameters.
-    pub phi: Phi,
+    pub(super) phi: Phi,
     /// The numbers of the model file.
-    pub numbers: Vec<f64>,
+    pub(super) numbers: Vec<f64>,
     /// Rigid bodies alone.
-    pub load: PerJoint,
+    pub(super) load: PerJoint,
     /// Their rates.
-    pub load_rate: PerJoint,
+    pub(super) load_rate: PerJoint,
     /// Everything; then, for each spring, what its joint takes less what it passes on.
-    pub total: PerJoint,
+    pub(super) total: PerJoint,
     /// The numbers of each joint's drive.
-    pub drives: Vec<Drive>,
+    pub(super) drives: Vec<Drive>,
 }
 
 impl<'a> Data<'a> {
     /// The rows of logs.
-    pub fn new(nominal: &'a Nominal<'a>, mut signals: Vec<Signals>) -> Self {
+    pub(super) fn new(nominal: &'a Nominal<'a>, mut signals: Vec<Signals>) -> Self {
         let joints = nominal.model.joints.len();
         let (given, directions) = (nominal.phi(&vec![0.0; nominal.len()]), nominal.directions());
         signals.iter_mut().for_each(|signals| settle(nominal, signals, &given));
@@ -198,18 +198,13 @@ impl<'a> Data<'a> {
     }
 
     /// Number of rows.
-    pub fn rows(&self) -> usize {
+    pub(super) fn rows(&self) -> usize {
         self.residual.len()
     }
 
     /// Torque less what the model gives with z, per row.
-    pub fn residual_of(&self, z: &[f64]) -> Vec<f64> {
-        self.without(None, z)
-    }
-
-    /// Rows, or those of the residual, less what z adds to what the model gives with z = 0.
-    pub(super) fn without(&self, rows: Option<&Vec<f64>>, z: &[f64]) -> Vec<f64> {
-        let mut residual = rows.unwrap_or(&self.residual).clone();
+    pub(super) fn residual_of(&self, z: &[f64]) -> Vec<f64> {
+        let mut residual = self.residual.clone();
         for (column, factor) in self.columns.iter().zip(z).filter(|(_, factor)| **factor != 0.0) {
             residual.iter_mut().zip(column).for_each(|(sum, entry)| *sum -= factor * entry);
         }
@@ -217,12 +212,17 @@ impl<'a> Data<'a> {
     }
 
     /// The torques that the model gives the motion of each log with z.
-    pub fn model_torques(&self, z: &[f64]) -> Vec<ModelTorques> {
+    pub(super) fn model_torques(&self, z: &[f64]) -> Vec<ModelTorques> {
         self.signals.iter().map(|signals| ModelTorques::new(self.nominal, signals, z)).collect()
     }
 
     /// What a law does to all logs, in the rows: of the equations that have rows.
-    pub fn response(&self, law: &dyn Law, values: &[f64], torques: &[ModelTorques]) -> RowResponse {
+    pub(super) fn response(
+        &self,
+        law: &dyn Law,
+        values: &[f64],
+        torques: &[ModelTorques],
+    ) -> RowResponse {
         let mut found = RowResponse::default();
         for (log, (signals, torques)) in self.signals.iter().zip(torques).enumerate() {
             let response = law.response(torques.motion(self.nominal, signals), values);
@@ -242,18 +242,18 @@ impl<'a> Data<'a> {
 
 /// A response in the rows: for each stretch the torque, and its derivatives by each parameter.
 #[derive(Clone, Debug, Default)]
-pub struct RowResponse {
+pub(super) struct RowResponse {
     /// The rows it acts on.
-    pub stretches: Vec<Stretch>,
+    pub(super) stretches: Vec<Stretch>,
     /// For each stretch the torque.
-    pub torque: Vec<Vec<f64>>,
+    pub(super) torque: Vec<Vec<f64>>,
     /// For each stretch and parameter the derivative.
-    pub gradient: Vec<Vec<Vec<f64>>>,
+    pub(super) gradient: Vec<Vec<Vec<f64>>>,
 }
 
 impl RowResponse {
     /// Takes the torque away from rows.
-    pub fn subtract_from(&self, rows: &mut [f64]) {
+    pub(super) fn subtract_from(&self, rows: &mut [f64]) {
         for (stretch, torque) in self.stretches.iter().zip(&self.torque) {
             let rows = rows[stretch.range()].iter_mut();
             rows.zip(torque).for_each(|(row, torque)| *row -= torque);
@@ -274,7 +274,11 @@ impl ModelTorques {
     }
 
     /// The motion of a log with these torques.
-    pub fn motion<'m>(&'m self, nominal: &'m Nominal<'m>, signals: &'m Signals) -> Motion<'m> {
+    pub(super) fn motion<'m>(
+        &'m self,
+        nominal: &'m Nominal<'m>,
+        signals: &'m Signals,
+    ) -> Motion<'m> {
         let Self { phi, numbers, load, load_rate, total, drives } = self;
         Motion { model: (nominal, phi), numbers, signals, load, load_rate, total, drives }
     }

@@ -185,8 +185,8 @@ pub fn diagnose(
     if let Some(aliases) = request.aliases {
         tell_aliases(request.candidates, aliases, &mut effects);
     }
-    if let Some((robot, seed)) = request.experiment {
-        separate(&setting, robot, seed, &after, filters, &mut effects);
+    if let Some(asked) = request.experiment {
+        separate(&setting, asked, (&found, &after), filters, &mut effects);
     }
     let states = [&before, &after];
     let leftovers = leftovers(&search.weighing.spectra, &found.after);

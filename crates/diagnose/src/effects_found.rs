@@ -12,7 +12,8 @@ use super::law_curve::LawCurve;
 use super::rounds::Found;
 use super::search::Search;
 use super::signals::Filters;
-use super::state::{MOST_Z, Setting, State, Taken};
+use super::state::{MOST_Z, Setting, State};
+use super::weighing::Placed;
 use denavit_codegen::model::Robot;
 use denavit_evidence::policy;
 use denavit_plants::effect::LawParameter;
@@ -125,19 +126,22 @@ pub(super) fn found_effects(
     (0..all.parts.len()).map(of).collect()
 }
 
-/// What else would do in a place, the most likely first.
-fn alternatives(found: &Found, place: usize) -> Vec<Alternative> {
+/// What else would do in a place.
+fn near(found: &Found, place: usize) -> impl Iterator<Item = &Hypothesis> {
     let now = found.after.posterior;
-    let near = |one: &&Hypothesis| now - one.posterior < policy::RIVAL;
-    let rivals = found.rivals.get(place).into_iter().flatten().filter(near);
-    rivals
-        .map(|one| Alternative {
-            candidate: one.parts[place].placed.candidate,
-            values: one.values(place),
-            log_odds: now - one.posterior,
-            is_exact: false,
-        })
-        .collect()
+    let rivals = found.rivals.get(place).into_iter().flatten();
+    rivals.filter(move |one| now - one.posterior < policy::RIVAL)
+}
+
+/// The same as it is told, the most likely first.
+fn alternatives(found: &Found, place: usize) -> Vec<Alternative> {
+    let of = |one: &Hypothesis| Alternative {
+        candidate: one.parts[place].placed.candidate,
+        values: one.values(place),
+        log_odds: found.after.posterior - one.posterior,
+        is_exact: false,
+    };
+    near(found, place).map(of).collect()
 }
 
 /// The parameters of an effect of a state, each with an error.
@@ -218,23 +222,26 @@ const MOST_RIVALS: usize = 3;
 /// Looks for motions that tell what was found from what would do as well.
 pub(super) fn separate(
     setting: &Setting<'_>,
-    robot: &Robot,
-    seed: u64,
-    state: &State,
+    (robot, seed): (&Robot, u64),
+    (found, state): (&Found, &State),
     filters: Filters,
-    found: &mut [FoundEffect],
+    effects: &mut [FoundEffect],
 ) {
     let given = setting.given.len();
-    for (place, one) in found.iter_mut().enumerate() {
-        let rivals = one.alternatives.iter().filter(|other| !other.is_exact).take(MOST_RIVALS);
-        let rivals: Vec<Taken> = rivals
-            .map(|other| Taken { candidate: other.candidate, values: other.values.clone() })
-            .collect();
+    for (place, one) in effects.iter_mut().enumerate() {
+        let rivals = near(found, place).zip(&one.alternatives);
+        let rivals = rivals.filter(|(_, other)| !other.is_exact).take(MOST_RIVALS);
+        let of = |(hypothesis, other): (&Hypothesis, &Alternative)| Placed {
+            values: other.values.clone(),
+            ..hypothesis.parts[place].placed.clone()
+        };
+        let rivals: Vec<Placed> = rivals.map(of).collect();
         if rivals.is_empty() {
             continue;
         }
         let mut others = state.taken.clone();
-        let own = others.remove(given + place);
+        let values = others.remove(given + place).values;
+        let own = Placed { values, ..found.after.parts[place].placed.clone() };
         let ambiguity = Ambiguity {
             nominal: setting.data.train.nominal,
             candidates: setting.candidates,

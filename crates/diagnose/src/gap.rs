@@ -14,12 +14,12 @@ pub struct Gap {
 
 impl Gap {
     /// The gap of what is left in the rows of data.
-    pub fn new(data: &Data<'_>, residual: &[f64]) -> Self {
+    pub(super) fn new(data: &Data<'_>, residual: &[f64]) -> Self {
         Self::of(data, |row, _| residual[row].powi(2))
     }
 
     /// The gap that noise alone leaves.
-    pub fn of_floor(data: &Data<'_>, floors: &[NoiseFloor]) -> Self {
+    pub(super) fn of_floor(data: &Data<'_>, floors: &[NoiseFloor]) -> Self {
         Self::of(data, |_, stretch| floors[stretch.log.0][stretch.equation].powi(2))
     }
 

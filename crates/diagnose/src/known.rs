@@ -68,7 +68,7 @@ fn resting(signals: &Signals, joint: JointIndex, heights: &[f64]) -> Vec<f64> {
 }
 
 /// What is unknown in rows, or beside them, where the filter rings.
-pub(super) fn with_ringing(rows: &[f64]) -> Vec<f64> {
+fn with_ringing(rows: &[f64]) -> Vec<f64> {
     let of = |k: usize| {
         let near = &rows[k.saturating_sub(1)..(k + 2).min(rows.len())];
         near.iter().fold(rows[k].abs(), |most, row| most.max(RINGING * row.abs()))

@@ -3,14 +3,12 @@
 //!
 //! - [`Signals`]: logs, filtered
 //! - [`Nominal`]: what the model says, and how sure it is
-//! - [`Data`]: both as rows
 //! - [`Gap`]: how far they are apart, and how far they must be
 //! - [`Candidate`], [`Law`]: what may be missing
 //! - [`diagnose()`]: which effects are missing, by their evidence
 
 mod alias;
 mod between;
-mod blocks;
 mod candidate;
 mod catalogue;
 mod columns;
@@ -29,7 +27,6 @@ mod floor;
 mod followed;
 mod gap;
 mod given;
-mod held;
 mod hypothesis;
 mod joint_law;
 mod known;
@@ -38,7 +35,6 @@ mod law_curve;
 mod leftover;
 mod nominal;
 mod policy;
-mod problem;
 mod reading_law;
 mod regime;
 mod rounds;
@@ -60,7 +56,6 @@ pub use alias::{ExactAliases, Named};
 pub use candidate::Candidate;
 pub use catalogue::{candidates, spring_candidates};
 pub use curve::{Curve, LoggedMotion};
-pub use data::{Data, ModelTorques, RowResponse, Stretch};
 pub use diagnosis::{Diagnosis, Gaps, Progress, Request, diagnose};
 pub use effects_found::{Alternative, EffectValue, FoundEffect, GivenEffect};
 pub use elastic::{BeforeSprings, Spring, before_springs};
@@ -73,8 +68,7 @@ pub use given::{Belief, given_candidates};
 pub use law::{Law, Motion, Response};
 pub use law_curve::{LawCurve, Quantity};
 pub use leftover::Leftover;
-pub use nominal::{Nominal, Phi, Uncertain};
-pub use problem::{Fitted, Problem};
+pub use nominal::{Nominal, Phi};
 pub use regime::{Part, Where};
 pub use rows::PerJoint;
 pub use search::Step;

@@ -16,15 +16,15 @@ use denavit_plants::regression::{ModelParameter, RegressionModel, StandardParame
 
 /// A number of the model that may be off.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Uncertain {
+pub(super) struct Uncertain {
     /// Its name in the model.
-    pub name: String,
+    pub(super) name: String,
     /// The value that the model gives.
-    pub value: f64,
+    pub(super) value: f64,
     /// Its standard deviation.
-    pub std: f64,
+    pub(super) std: f64,
     /// Whether it cannot be negative.
-    pub is_positive: bool,
+    pub(super) is_positive: bool,
 }
 
 /// The nominal model: phi of its values and the directions in which they may be off.
@@ -33,7 +33,7 @@ pub struct Nominal<'a> {
     /// Base parameters and their columns.
     pub model: &'a RegressionModel,
     /// The numbers that may be off, one for each entry of z.
-    pub uncertain: Vec<Uncertain>,
+    pub(super) uncertain: Vec<Uncertain>,
     /// For each of them its place among the parameters of the regression.
     places: Vec<usize>,
     /// theta0 of the model's values.

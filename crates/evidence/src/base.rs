@@ -37,17 +37,21 @@ impl Base {
         let basis = shown(&layout, &own, parameters);
         let own: Vec<DMatrix<f64>> = own.iter().map(|columns| columns * &basis).collect();
         let parameters = basis.ncols();
-        let mut base = Self { layout, data, own, basis, products: Vec::new(), parameters };
-        let cells: Vec<(usize, Range<usize>)> = base.layout.cells().collect();
-        let of_cell = |(channel, rows): &(usize, Range<usize>)| {
+        Self { layout, data: Vec::new(), own, basis, products: Vec::new(), parameters }.of(data)
+    }
+
+    /// The same of other data.
+    pub fn of(self, data: Spectrum) -> Self {
+        let parameters = self.parameters;
+        let of_cell = |(channel, rows): (usize, Range<usize>)| {
             let mut all = DMatrix::zeros(rows.len(), 1 + parameters);
-            all.column_mut(0).copy_from_slice(&base.data[*channel][rows.clone()]);
+            all.column_mut(0).copy_from_slice(&data[channel][rows.clone()]);
             all.columns_mut(1, parameters)
-                .copy_from(&base.own[*channel].rows(rows.start, rows.len()));
+                .copy_from(&self.own[channel].rows(rows.start, rows.len()));
             all.tr_mul(&all)
         };
-        base.products = cells.iter().map(of_cell).collect();
-        base
+        let products = self.layout.cells().map(of_cell).collect();
+        Self { products, data, ..self }
     }
 
     /// What factors of the own columns leave of the data.

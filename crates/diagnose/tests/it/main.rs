@@ -3,7 +3,6 @@
 mod alias;
 mod columns;
 mod elastic;
-mod held;
 mod laws;
 mod motion;
 mod one_joint;

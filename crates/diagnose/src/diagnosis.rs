@@ -46,8 +46,8 @@ pub struct Request<'a> {
     pub given: Vec<Taken>,
     /// The symbolic regressor of the model, to tell exact aliases; none leaves them untold.
     pub aliases: Option<&'a ExactAliases<'a>>,
-    /// The robot with its limits, for experiments that separate names, and the seed of what is drawn
-    /// for them; none looks for none.
+    /// The robot with its limits, for experiments that separate names, and the seed of what is
+    /// drawn for them; none looks for none.
     pub experiment: Option<(&'a Robot, u64)>,
     /// The model as a file, to be moved along the logs; none leaves that gap out.
     pub moved: Option<&'a Moved<'a>>,

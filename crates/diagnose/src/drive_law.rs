@@ -10,10 +10,10 @@ impl JointLaw {
     /// What passes through a transmission that gives way; none where nothing is to be compared.
     ///
     /// The rotor is moved along the log by the torque that was measured, at the full rate; what
-    /// reaches the joint then is compared with what the joint takes. So what was measured is changed
-    /// and not what is computed, and the law has no torque where nothing was measured. It has two or
-    /// three numbers and no amplitude: it explains nothing but by moving the rotor as it really
-    /// moved.
+    /// reaches the joint then is compared with what the joint takes. So what was measured is
+    /// changed and not what is computed, and the law has no torque where nothing was measured. It
+    /// has two or three numbers and no amplitude: it explains nothing but by moving the rotor as it
+    /// really moved.
     pub(super) fn through_play(&self, motion: &Motion<'_>, values: &[f64]) -> Option<Response> {
         let (joint, whole) = (self.joint, motion.signals);
         // a motor that is measured is where it is

@@ -6,9 +6,9 @@ use super::signals::Signals;
 use crate::policy::floor::{LEAST, UNREPEATABLE};
 use denavit_measure::condition::{Butterworth, Laps};
 
-/// The floor of one log, after the filter of the rows: the deviation of each joint's torque, then of
-/// each spring's [N m, N]; of white noise above the motion's frequencies and of steps of encoders,
-/// unless laps show more.
+/// The floor of one log, after the filter of the rows: the deviation of each joint's torque, then
+/// of each spring's [N m, N]; of white noise above the motion's frequencies and of steps of
+/// encoders, unless laps show more.
 pub(super) type NoiseFloor = Vec<f64>;
 
 /// The floors of logs, with the torques of the nominal model.

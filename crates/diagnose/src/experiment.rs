@@ -2,9 +2,9 @@
 //! the logs do not.
 //!
 //! A log of each name is simulated along a motion, with the noise of the logs, and the names are
-//! weighed in it as a diagnosis does: by the evidence of each, with everything that the model is not
-//! sure of. The motion makes the least odds of a name that is there large; how often these are what
-//! a name asks for is its power.
+//! weighed in it as a diagnosis does: by the evidence of each, with everything that the model is
+//! not sure of. The motion makes the least odds of a name that is there large; how often these are
+//! what a name asks for is its power.
 
 use super::candidate::Candidate;
 use super::data::Data;
@@ -55,8 +55,8 @@ pub struct Experiment {
     pub separation: f64,
     /// The same of the motion of the logs.
     pub separation_before: f64,
-    /// The share of simulated logs in which the right name has the odds that a name asks for, against
-    /// each other one.
+    /// The share of simulated logs in which the right name has the odds that a name asks for,
+    /// against each other one.
     pub power: f64,
     /// How many logs were simulated.
     pub draws: usize,

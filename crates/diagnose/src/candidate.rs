@@ -2,8 +2,9 @@
 
 use super::law::Law;
 use crate::policy::candidate::{LIMITS, PLACES};
-use denavit_codegen::effect::Occurrence;
+use denavit_codegen::effect::{Effect, EffectSite, Occurrence};
 use denavit_evidence::policy;
+use denavit_identify::NewPlace;
 use denavit_measure::JointIndex;
 use denavit_plants::effect::LawParameter;
 use std::f64::consts::TAU;
@@ -31,6 +32,16 @@ impl Candidate {
     pub fn name(&self) -> String {
         format!("{} at {}", self.effect, self.at)
     }
+
+    /// Its place in the file of a model, by the definitions of effects.
+    pub fn place(&self, effects: &[Effect]) -> NewPlace<'_> {
+        let known = effects.iter().find(|effect| effect.name == self.effect);
+        match (known.map(|effect| effect.at), self.at.split_once(" with ")) {
+            (Some(EffectSite::Model), _) => NewPlace::Model,
+            (_, Some((joint, second))) => NewPlace::Pair(joint, second),
+            _ => NewPlace::Link(&self.at),
+        }
+    }
 }
 
 /// Units of laws that repeat along a joint.
@@ -39,33 +50,24 @@ const PER_POSITION: [&str; 2] = ["1/rad", "1/m"];
 /// Most points from which one law's parameters are searched.
 const MOST_STARTS: usize = 48;
 
-/// Where the search of a law's parameters begins, and what is believed of them there.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Start {
-    /// Their values.
-    pub values: Vec<f64>,
-    /// How far each may be from that; none of amplitudes, whose size is that of torques.
-    pub deviations: Vec<Option<f64>>,
-}
+/// Where the search of a law's parameters begins: their values, and how far each may be from that;
+/// none of amplitudes, whose size is that of torques.
+pub(super) type Start = Vec<(f64, Option<f64>)>;
 
 /// Where searches of a law's parameters begin: what it is linear in, where it is off; every
 /// combination of the values that the other parameters begin with, each within half the distance
 /// to its neighbours. Positions without bounds begin within `range`, what the joint covers; one
 /// over a limit of torques at limits below the `largest`.
-pub fn starts(
+pub(super) fn starts(
     parameters: &[LawParameter],
     range: Option<[f64; 2]>,
     largest: Option<f64>,
 ) -> Vec<Start> {
-    let mut all = vec![Start { values: Vec::new(), deviations: Vec::new() }];
+    let mut all: Vec<Start> = vec![Vec::new()];
     for parameter in parameters {
         let values = values_of(parameter, range, largest);
         let longer = |start: &Start| -> Vec<Start> {
-            let longer = |(value, deviation): &(f64, Option<f64>)| Start {
-                values: [start.values.as_slice(), &[*value]].concat(),
-                deviations: [start.deviations.as_slice(), &[*deviation]].concat(),
-            };
-            values.iter().map(longer).collect()
+            values.iter().map(|own| [start.as_slice(), &[*own]].concat()).collect()
         };
         all = all.iter().flat_map(longer).collect();
     }
@@ -85,12 +87,8 @@ fn values_of(
     let is_anywhere = is_position && low.is_infinite() && high.is_infinite();
     let is_limit = !parameter.linear && ["1/(N m)", "1/N"].contains(&parameter.unit.as_str());
     let values: Vec<f64> = match (parameter.nominal, range, largest) {
-        (Some(off), ..) if parameter.linear && parameter.start.is_empty() => {
-            return vec![(off, is_position.then_some(policy::ANGLE))];
-        }
         (Some(off), ..) if parameter.start.is_empty() => {
-            let deviation = if is_position { Some(policy::ANGLE) } else { None };
-            return vec![(off, deviation)];
+            return vec![(off, is_position.then_some(policy::ANGLE))];
         }
         (_, _, Some(largest)) if is_limit && largest > 0.0 => {
             LIMITS.iter().map(|share| 1.0 / (share * largest)).collect()
@@ -156,10 +154,12 @@ mod tests {
         let place = of("rad", None, open, false);
         let within = starts(&[stiffness.clone(), place.clone()], Some([1.0, 3.0]), None);
         assert_eq!(within.len(), PLACES.len());
-        assert!(within.iter().all(|one| one.values[0] == 0.0 && one.deviations[0].is_none()));
-        assert!(within.iter().all(|one| 1.0 < one.values[1] && one.values[1] < 3.0));
+        assert!(within.iter().all(|one| one[0] == (0.0, None)));
+        assert!(within.iter().all(|one| 1.0 < one[1].0 && one[1].0 < 3.0));
         let only = |parameters: &[LawParameter], range| {
-            starts(parameters, range, None).into_iter().map(|one| one.values).collect::<Vec<_>>()
+            let all = starts(parameters, range, None).into_iter();
+            let values = |one: Start| one.into_iter().map(|(value, _)| value).collect();
+            all.map(values).collect::<Vec<Vec<f64>>>()
         };
         assert_eq!(only(&[stiffness.clone(), place], None), [[0.0, 5.0]]);
         let bounded = of("rad", None, [0.0, 9.0], false);

@@ -1,12 +1,8 @@
 //! The catalogue in all places of a robot.
 
 use super::candidate::Candidate;
-use super::drive_law::DriveLaw;
-use super::elastic::SeriesSpring;
-use super::elastic_law::ElasticLaw;
-use super::joint_law::{DelayLaw, DemandLaw, JointLaw, RobotLaw, SpringLaw};
-use super::law::Law;
-use super::reading_law::ReadingLaw;
+use super::elastic::Spring;
+use super::joint_law::{JointLaw, RobotLaw};
 use denavit_codegen::effect::{
     Channel, Effect, EffectSite, Law as EffectKindLaw, ModelTerm, with_term,
 };
@@ -54,7 +50,7 @@ pub fn candidates(effects: &[Effect], robot: &Robot, model: &RegressionModel) ->
 /// Every effect on a series spring in every spring whose balance is measured.
 pub fn spring_candidates(
     effects: &[Effect],
-    springs: &[SeriesSpring],
+    springs: &[Spring],
     model: &RegressionModel,
 ) -> Vec<Candidate> {
     let of_effect = |effect| springs.iter().map(move |spring| (effect, spring.joint));
@@ -102,21 +98,6 @@ fn on_robot(effect: &Effect, robot: &Robot, model: &RegressionModel) -> Vec<Cand
     places.into_iter().filter_map(of).collect()
 }
 
-/// A law of one joint, as it acts on the torques of a log.
-pub(super) fn law_of(law: EffectLaw, joint: JointIndex, other: Option<JointIndex>) -> Box<dyn Law> {
-    match law.channel() {
-        None if law.at == EffectSite::Spring => Box::new(SpringLaw { law, joint }),
-        Some(Channel::Torque) if law.has_play() => Box::new(DriveLaw { law, joint }),
-        Some(Channel::Torque) if law.is_transmission() => Box::new(ElasticLaw { law, joint }),
-        Some(Channel::Torque) if law.is_inverse() => Box::new(DemandLaw { law, joint }),
-        Some(Channel::Torque) if law.is_delay() => {
-            Box::new(DelayLaw { law: JointLaw { law, joint, other } })
-        }
-        None | Some(Channel::Torque) => Box::new(JointLaw { law, joint, other }),
-        Some(Channel::Position | Channel::Rate) => Box::new(ReadingLaw::new(law, joint)),
-    }
-}
-
 fn on_joint(
     effect: &Effect,
     described: &RegressionJoint,
@@ -129,7 +110,7 @@ fn on_joint(
     if law.channel() == Some(Channel::Rate) {
         return None;
     }
-    let law = law_of(law, joint, other.map(|(other, _)| other));
+    let law = Box::new(JointLaw::new(law, joint, other.map(|(other, _)| other)));
     let at = match other {
         Some((_, other)) => format!("{} with {}", described.name, other.name),
         None => described.name.clone(),

@@ -1,73 +1,81 @@
 //! Logs with the nominal model's rows: all that is asked of them, weighted and stacked.
 
 use super::known::weights;
-use super::law::{Motion, Response, derivative};
+use super::law::{Law, Motion, derivative};
 use super::nominal::{Nominal, Phi};
-use super::rows::{LogRows, PerJoint, behind_springs, torques};
+use super::rows::{LogRows, PerJoint, behind_springs, of_axes, torques};
 use super::signals::Signals;
 use super::turning::{PER_JOINT, settle, unnamed};
 pub(super) use crate::policy::data::SPRING_ZERO;
 use denavit_evidence::policy;
 use denavit_measure::{JointIndex, LogIndex};
 use denavit_plants::effect::Drive;
+use std::ops::Range;
 
 /// A stretch of rows: those of one equation in one log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Stretch {
+pub(super) struct Stretch {
     /// The log.
-    pub log: LogIndex,
+    pub(super) log: LogIndex,
     /// The joint.
-    pub joint: JointIndex,
+    pub(super) joint: JointIndex,
     /// The equation: of the torque of that joint, or after all joints that of its spring.
-    pub equation: usize,
+    pub(super) equation: usize,
     /// The first of its rows.
-    pub first: usize,
+    pub(super) first: usize,
     /// Their number.
-    pub rows: usize,
+    pub(super) rows: usize,
+}
+
+impl Stretch {
+    /// Its rows among all.
+    pub(super) fn range(&self) -> Range<usize> {
+        self.first..self.first + self.rows
+    }
 }
 
 /// Logs with the columns of everything that the nominal model is not sure of.
 #[derive(Clone, Debug)]
-pub struct Data<'a> {
+pub(super) struct Data<'a> {
     /// The nominal model.
-    pub nominal: &'a Nominal<'a>,
+    pub(super) nominal: &'a Nominal<'a>,
     /// The logs.
-    pub signals: Vec<Signals>,
+    pub(super) signals: Vec<Signals>,
     /// All rows: joint by joint, then spring by spring, log by log.
-    pub stretches: Vec<Stretch>,
+    pub(super) stretches: Vec<Stretch>,
     /// Torque less what the model gives with z = 0, per row; of a spring what it passes on less
     /// what its joint takes [N m, N].
-    pub residual: Vec<f64>,
+    pub(super) residual: Vec<f64>,
     /// For each entry of z its column: the numbers of the model, the time between torque and
     /// motion, for each joint what is too small for a name, and for each spring its stiffness and
     /// the zero of its deflection.
-    pub columns: Vec<Vec<f64>>,
+    pub(super) columns: Vec<Vec<f64>>,
     /// The torque of every row, filtered: measured, or by the deflection of a spring [N m, N].
-    pub torque: Vec<f64>,
+    pub(super) torque: Vec<f64>,
     /// What every row counts, from 0 to 1.
-    pub weights: Vec<f64>,
+    pub(super) weights: Vec<f64>,
 }
 
 /// Torques of the model at the samples of one log.
 #[derive(Clone, Debug)]
-pub struct ModelTorques {
+pub(super) struct ModelTorques {
     /// phi of the model's parameters.
-    pub phi: Phi,
+    pub(super) phi: Phi,
     /// The numbers of the model file.
-    pub numbers: Vec<f64>,
+    pub(super) numbers: Vec<f64>,
     /// Rigid bodies alone.
-    pub load: PerJoint,
+    pub(super) load: PerJoint,
     /// Their rates.
-    pub load_rate: PerJoint,
+    pub(super) load_rate: PerJoint,
     /// Everything; then, for each spring, what its joint takes less what it passes on.
-    pub total: PerJoint,
+    pub(super) total: PerJoint,
     /// The numbers of each joint's drive.
-    pub drives: Vec<Drive>,
+    pub(super) drives: Vec<Drive>,
 }
 
 impl<'a> Data<'a> {
     /// The rows of logs.
-    pub fn new(nominal: &'a Nominal<'a>, mut signals: Vec<Signals>) -> Self {
+    pub(super) fn new(nominal: &'a Nominal<'a>, mut signals: Vec<Signals>) -> Self {
         let joints = nominal.model.joints.len();
         let (given, directions) = (nominal.phi(&vec![0.0; nominal.len()]), nominal.directions());
         signals.iter_mut().for_each(|signals| settle(nominal, signals, &given));
@@ -95,34 +103,31 @@ impl<'a> Data<'a> {
             data.signals.iter().map(|signals| unnamed(nominal, signals, &given)).collect();
         let weights: Vec<PerJoint> =
             data.signals.iter().map(|signals| weights(nominal, signals, &given)).collect();
-        for joint in 0..joints {
-            for (log, rows) in rows.iter().enumerate() {
-                let Some(target) = &rows.target[joint] else { continue };
-                let (first, count) = (data.residual.len(), target.len());
-                let equation = joint;
+        for at in (0..joints).map(JointIndex) {
+            let joint = at.0;
+            for (log, own) in rows.iter().enumerate() {
+                let Some(target) = &own.target[joint] else { continue };
+                let (first, rows) = (data.residual.len(), target.len());
                 data.stretches.push(Stretch {
                     log: LogIndex(log),
-                    joint: JointIndex(joint),
-                    equation,
+                    joint: at,
+                    equation: joint,
                     first,
-                    rows: count,
+                    rows,
                 });
-                let computed = rows.torque(nominal, JointIndex(joint), &given.axes);
+                let computed = own.torque(nominal, at, &given.axes);
                 data.residual.extend(target.iter().zip(computed).map(|(a, b)| a - b));
                 data.torque.extend(data.signals[log].torque[joint].iter().flatten());
                 data.weights.extend(&weights[log][joint]);
                 for (column, direction) in data.columns.iter_mut().zip(&directions) {
-                    column.extend(rows.torque(nominal, JointIndex(joint), &direction.axes));
+                    column.extend(own.torque(nominal, at, &direction.axes));
                 }
                 data.columns[directions.len()].extend(&time[log][joint]);
-                for (place, column) in data.columns[directions.len() + 1..].iter_mut().enumerate() {
-                    let own = (place / PER_JOINT == joint).then_some(place % PER_JOINT);
-                    match own {
-                        Some(own) => {
-                            column.extend(data.signals[log].rows_of(&unnamed[log][joint][own]));
-                        }
-                        None => column.resize(column.len() + count, 0.0),
-                    }
+                // What is too small for a name is that of one joint each.
+                data.columns.iter_mut().for_each(|column| column.resize(first + rows, 0.0));
+                let columns = data.columns[directions.len() + 1 + PER_JOINT * joint..].iter_mut();
+                for (column, unnamed) in columns.zip(&unnamed[log][joint]) {
+                    column[first..].copy_from_slice(&data.signals[log].rows_of(unnamed));
                 }
             }
         }
@@ -141,13 +146,8 @@ impl<'a> Data<'a> {
                 let Some([deflection, _]) = self.signals[log].deflection(joint) else { continue };
                 let deflection = self.signals[log].rows_of(&deflection);
                 let (first, count) = (self.residual.len(), deflection.len());
-                self.stretches.push(Stretch {
-                    log: LogIndex(log),
-                    joint,
-                    equation,
-                    first,
-                    rows: count,
-                });
+                let log = LogIndex(log);
+                self.stretches.push(Stretch { log, joint, equation, first, rows: count });
                 let passed: Vec<f64> = deflection.iter().map(|d| spring.stiffness * d).collect();
                 let computed = rows.torque(nominal, joint, &given.loads);
                 let left = rows.unknown(joint, passed.clone());
@@ -180,7 +180,7 @@ impl<'a> Data<'a> {
                 let (_, own) = all.iter().find(|(joint, _)| *joint == stretch.joint)?;
                 Some(signals.rows_of(own))
             };
-            let rows = stretch.first..stretch.first + stretch.rows;
+            let rows = stretch.range();
             if let Some(more) = more(given) {
                 self.residual[rows.clone()].iter_mut().zip(more).for_each(|(row, m)| *row -= m);
             }
@@ -194,23 +194,17 @@ impl<'a> Data<'a> {
 
     /// What the rows of a stretch count.
     pub(super) fn weights_of(&self, stretch: usize) -> Vec<f64> {
-        let Stretch { first, rows, .. } = self.stretches[stretch];
-        self.weights[first..first + rows].to_vec()
+        self.weights[self.stretches[stretch].range()].to_vec()
     }
 
     /// Number of rows.
-    pub fn rows(&self) -> usize {
+    pub(super) fn rows(&self) -> usize {
         self.residual.len()
     }
 
     /// Torque less what the model gives with z, per row.
-    pub fn residual_of(&self, z: &[f64]) -> Vec<f64> {
-        self.without(None, z)
-    }
-
-    /// Rows, or those of the residual, less what z adds to what the model gives with z = 0.
-    pub(super) fn without(&self, rows: Option<&Vec<f64>>, z: &[f64]) -> Vec<f64> {
-        let mut residual = rows.unwrap_or(&self.residual).clone();
+    pub(super) fn residual_of(&self, z: &[f64]) -> Vec<f64> {
+        let mut residual = self.residual.clone();
         for (column, factor) in self.columns.iter().zip(z).filter(|(_, factor)| **factor != 0.0) {
             residual.iter_mut().zip(column).for_each(|(sum, entry)| *sum -= factor * entry);
         }
@@ -218,20 +212,29 @@ impl<'a> Data<'a> {
     }
 
     /// The torques that the model gives the motion of each log with z.
-    pub fn model_torques(&self, z: &[f64]) -> Vec<ModelTorques> {
+    pub(super) fn model_torques(&self, z: &[f64]) -> Vec<ModelTorques> {
         self.signals.iter().map(|signals| ModelTorques::new(self.nominal, signals, z)).collect()
     }
 
-    /// What a response to the motion of one log is in the rows: of the equations that have rows.
-    pub fn in_rows(&self, log: LogIndex, signals: &Signals, response: &Response) -> RowResponse {
+    /// What a law does to all logs, in the rows: of the equations that have rows.
+    pub(super) fn response(
+        &self,
+        law: &dyn Law,
+        values: &[f64],
+        torques: &[ModelTorques],
+    ) -> RowResponse {
         let mut found = RowResponse::default();
-        for (place, &equation) in response.equations.iter().enumerate() {
-            let is_own = |stretch: &&Stretch| stretch.log == log && stretch.equation == equation;
-            let Some(&stretch) = self.stretches.iter().find(is_own) else { continue };
-            let gradient = response.gradient.iter().map(|all| signals.rows_of(&all[place]));
-            found.stretches.push(stretch);
-            found.gradient.push(gradient.collect());
-            found.torque.push(signals.rows_of(&response.torque[place]));
+        for (log, (signals, torques)) in self.signals.iter().zip(torques).enumerate() {
+            let response = law.response(torques.motion(self.nominal, signals), values);
+            for (place, &equation) in response.equations.iter().enumerate() {
+                let is_own =
+                    |stretch: &&Stretch| stretch.log.0 == log && stretch.equation == equation;
+                let Some(&stretch) = self.stretches.iter().find(is_own) else { continue };
+                let gradient = response.gradient.iter().map(|all| signals.rows_of(&all[place]));
+                found.stretches.push(stretch);
+                found.gradient.push(gradient.collect());
+                found.torque.push(signals.rows_of(&response.torque[place]));
+            }
         }
         found
     }
@@ -239,31 +242,21 @@ impl<'a> Data<'a> {
 
 /// A response in the rows: for each stretch the torque, and its derivatives by each parameter.
 #[derive(Clone, Debug, Default)]
-pub struct RowResponse {
+pub(super) struct RowResponse {
     /// The rows it acts on.
-    pub stretches: Vec<Stretch>,
+    pub(super) stretches: Vec<Stretch>,
     /// For each stretch the torque.
-    pub torque: Vec<Vec<f64>>,
+    pub(super) torque: Vec<Vec<f64>>,
     /// For each stretch and parameter the derivative.
-    pub gradient: Vec<Vec<Vec<f64>>>,
-    /// For each parameter one over the deviation that the model states: 0 of one that is free,
-    /// infinite of one that is certain.
-    pub stiffness: Vec<f64>,
+    pub(super) gradient: Vec<Vec<Vec<f64>>>,
 }
 
 impl RowResponse {
-    /// Appends the response of another log.
-    pub fn append(&mut self, mut other: Self) {
-        self.stretches.append(&mut other.stretches);
-        self.torque.append(&mut other.torque);
-        self.gradient.append(&mut other.gradient);
-    }
-
     /// Takes the torque away from rows.
-    pub fn subtract_from(&self, rows: &mut [f64]) {
+    pub(super) fn subtract_from(&self, rows: &mut [f64]) {
         for (stretch, torque) in self.stretches.iter().zip(&self.torque) {
-            let rows = &mut rows[stretch.first..stretch.first + stretch.rows];
-            rows.iter_mut().zip(torque).for_each(|(row, torque)| *row -= torque);
+            let rows = rows[stretch.range()].iter_mut();
+            rows.zip(torque).for_each(|(row, torque)| *row -= torque);
         }
     }
 }
@@ -273,7 +266,7 @@ impl ModelTorques {
     pub(super) fn new(nominal: &Nominal<'_>, signals: &Signals, z: &[f64]) -> Self {
         let (phi, numbers) = (nominal.phi(z), nominal.numbers(z));
         let drives = Drive::all(nominal.model, &phi.drives);
-        let load = torques(nominal, signals, &nominal.load_phi(z));
+        let load = of_axes(nominal, signals, &phi.loads, true);
         let rate = |load: &Vec<f64>| derivative(load, signals.step_s);
         let load_rate = load.iter().map(rate).collect();
         let total = torques(nominal, signals, &phi);
@@ -281,7 +274,11 @@ impl ModelTorques {
     }
 
     /// The motion of a log with these torques.
-    pub fn motion<'m>(&'m self, nominal: &'m Nominal<'m>, signals: &'m Signals) -> Motion<'m> {
+    pub(super) fn motion<'m>(
+        &'m self,
+        nominal: &'m Nominal<'m>,
+        signals: &'m Signals,
+    ) -> Motion<'m> {
         let Self { phi, numbers, load, load_rate, total, drives } = self;
         Motion { model: (nominal, phi), numbers, signals, load, load_rate, total, drives }
     }

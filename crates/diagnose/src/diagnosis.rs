@@ -3,23 +3,21 @@
 use super::alias::ExactAliases;
 use super::candidate::Candidate;
 use super::columns::misread;
-use super::curve::{Curve, curves};
+use super::curve::{Curve, LoggedMotion, curves, logged};
 use super::data::Data;
 use super::effects_found::{
     FoundEffect, GivenEffect, driven_names, found_effects, given_effects, separate, tell_aliases,
 };
-use super::elastic::SeriesSpring;
-use super::error::Error;
+use super::elastic::Spring;
+use super::error::{Cause, Error};
 use super::excitation::{Visible, visible};
-use super::experiment::ExperimentOptions;
-use super::floor::NoiseFloor;
+use super::floor::{NoiseFloor, floors};
 use super::gap::{Gap, share_closed};
 use super::leftover::{Leftover, leftovers};
-use super::logged::{LoggedMotion, logged};
-use super::nominal::{Nominal, NominalAt, Uncertainty};
+use super::nominal::Nominal;
 use super::regime::{Where, where_left};
 use super::rounds::Found;
-use super::search::{Search, SearchOptions, Step};
+use super::search::{Search, Step};
 use super::signals::{Filters, Signals};
 use super::simulated::{MotionGap, MotionGaps, Moved};
 use super::state::{Effects, Setting, State, Taken};
@@ -37,7 +35,7 @@ pub struct Request<'a> {
     /// Base parameters of the nominal model and their columns.
     pub model: &'a RegressionModel,
     /// Springs between motors and joints that the logs have both angles of.
-    pub springs: &'a [SeriesSpring],
+    pub springs: &'a [Spring],
     /// Logs to fit.
     pub train: Vec<MeasuredLog>,
     /// Logs to judge with.
@@ -46,16 +44,15 @@ pub struct Request<'a> {
     pub candidates: &'a [Candidate],
     /// What the model has of them, at its values.
     pub given: Vec<Taken>,
-    /// How far numbers of the model may be off that state nothing.
-    pub uncertainty: Uncertainty,
     /// The symbolic regressor of the model, to tell exact aliases; none leaves them untold.
     pub aliases: Option<&'a ExactAliases<'a>>,
-    /// The robot with its limits, for experiments that separate names; none looks for none.
-    pub experiment: Option<(&'a Robot, ExperimentOptions)>,
+    /// The robot with its limits, for experiments that separate names, and the seed of what is
+    /// drawn for them; none looks for none.
+    pub experiment: Option<(&'a Robot, u64)>,
     /// The model as a file, to be moved along the logs; none leaves that gap out.
     pub moved: Option<&'a Moved<'a>>,
-    /// What the search asks for.
-    pub options: SearchOptions,
+    /// Most effects that are added.
+    pub most_effects: usize,
     /// The filters; found from the motion if none are given.
     pub filters: Option<Filters>,
 }
@@ -141,8 +138,7 @@ pub fn diagnose(
     watch: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Diagnosis, Error> {
     Error::check(&request)?;
-    let nominal = Nominal::new(request.model, request.uncertainty)
-        .with_springs(request.springs, request.uncertainty);
+    let nominal = Nominal::new(request.model).with_springs(request.springs);
     let filters = request
         .filters
         .map_or_else(|| filters_of(&[request.train.as_slice(), &request.held_out].concat()), Ok)?;
@@ -150,7 +146,7 @@ pub fn diagnose(
     let logs = Split { train: read(request.train)?, held_out: read(request.held_out)? };
     let nominal = nominal.moving_as(&logs.train);
     let data = logs.map(|signals| Data::new(&nominal, signals));
-    let floors = data.each_ref().map(|data| NoiseFloor::of_logs(&nominal, &data.signals));
+    let floors = data.each_ref().map(|data| floors(&nominal, &data.signals));
     let setting = Setting {
         data: data.each_ref(),
         candidates: request.candidates,
@@ -158,13 +154,13 @@ pub fn diagnose(
         floors: floors.each_ref().map(Vec::as_slice),
     };
     let misread = misread(&data.train, &setting.as_given(&data.train));
-    let options = if misread.is_empty() { request.options } else { SearchOptions::none() };
+    let most = if misread.is_empty() { request.most_effects } else { 0 };
     let sets = Vec::from(setting.data.into_array());
     let own = setting.effects(&setting.given);
     let mut searched = |z: &[f64], begun: &[Placed], may_move: bool| {
         let weighing = Weighing::new(sets.clone(), own, z);
         let watched = &mut |share| watch(&Progress::Evaluated(share));
-        let search = Search::new(weighing, setting.given.len(), options, watched);
+        let search = Search::new(weighing, setting.given.len(), most, watched);
         let watch = &mut |taken: &[usize]| watch(&Progress::Found(taken.to_vec()));
         let found = search.run(begun, may_move, watch);
         (search, found)
@@ -189,15 +185,21 @@ pub fn diagnose(
     if let Some(aliases) = request.aliases {
         tell_aliases(request.candidates, aliases, &mut effects);
     }
-    if let Some((robot, options)) = request.experiment {
-        separate(&setting, robot, &options, &after, filters, &mut effects);
+    if let Some(asked) = request.experiment {
+        separate(&setting, asked, (&found, &after), filters, &mut effects);
     }
-    let visible = visible(&setting, &search, &found.after);
+    let states = [&before, &after];
     let leftovers = leftovers(&search.weighing.spectra, &found.after);
-    let moved = request.moved;
-    let told = Told { setting: &setting, moved, filters, found, before, after };
-    let mut diagnosis = told.diagnosis(effects, visible, leftovers);
-    judge(&mut diagnosis, &setting, &told.found, &told.after, &misread);
+    let unnamed = leftovers.iter().filter(|one| one.share > policy::LEFT);
+    let mut diagnosis = Diagnosis {
+        visible: visible(&search, &found.after),
+        structures: unnamed.filter_map(|one| describe(&setting, &after, one.equation)).collect(),
+        leftovers,
+        effects,
+        motion: request.moved.map(|moved| motion_gaps(moved, &setting, filters, states)),
+        ..told(&setting, filters, &found, states)
+    };
+    judge(&mut diagnosis, &setting, &found, &after, &misread);
     Ok(diagnosis)
 }
 
@@ -209,79 +211,56 @@ fn null(sets: &[&Data<'_>], given: Effects<'_>) -> Vec<f64> {
     weighed.own[..columns].to_vec()
 }
 
-/// What was found, with what it is told of.
-struct Told<'t, 'a> {
-    setting: &'t Setting<'a>,
-    moved: Option<&'a Moved<'a>>,
+/// What two states say of the logs, before and after effects were found.
+fn told(
+    setting: &Setting<'_>,
     filters: Filters,
-    found: Found,
-    before: State,
-    after: State,
+    found: &Found,
+    [before, after]: [&State; 2],
+) -> Diagnosis {
+    let Setting { data, floors, .. } = setting;
+    let nominal = data.train.nominal;
+    let filter_s = 0.35 / filters.torque_hz;
+    let left = |State { residual, torques, .. }: &State| {
+        where_left(data.train, &residual.train, &torques.train, floors.train, filter_s)
+    };
+    let given = data.map(|data| setting.as_given(data));
+    let [of_before, of_after] = [before, after].map(|state| &state.residual);
+    Diagnosis {
+        verdict: Verdict::CannotTell,
+        reasons: Vec::new(),
+        places: (0..nominal.equations()).map(|at| nominal.equation_name(at)).collect(),
+        before: left(before),
+        after: left(after),
+        given: given_effects(setting, after),
+        effects: Vec::new(),
+        visible: Vec::new(),
+        leftovers: Vec::new(),
+        structures: Vec::new(),
+        is_left_at_reversals: false,
+        steps: found.steps.clone(),
+        train: Gaps::new(data.train, floors.train, &given.train, &of_after.train),
+        held_out: Gaps::new(data.held_out, floors.held_out, &given.held_out, &of_after.held_out),
+        motion: None,
+        curves: curves(data.held_out, [&given.held_out, &of_before.held_out, &of_after.held_out]),
+        logged: logged(data.held_out),
+        filters,
+        driven: [before, after].map(|state| driven_names(setting, state)),
+    }
 }
 
-impl Told<'_, '_> {
-    fn diagnosis(
-        &self,
-        effects: Vec<FoundEffect>,
-        visible: Vec<Visible>,
-        leftovers: Vec<Leftover>,
-    ) -> Diagnosis {
-        let Self { setting, moved, filters, found, before, after } = self;
-        let Setting { data, floors, .. } = setting;
-        let nominal = data.train.nominal;
-        let gaps = |data: &Data<'_>, floors: &[NoiseFloor], left: &[f64]| {
-            Gaps::new(data, floors, &setting.as_given(data), left)
-        };
-        let filter_s = 0.35 / filters.torque_hz;
-        let left = |State { residual, torques, .. }: &State| {
-            where_left(data.train, &residual.train, &torques.train, floors.train, filter_s)
-        };
-        let has_structure = |one: &&Leftover| one.share > policy::LEFT;
-        let unnamed = leftovers.iter().filter(has_structure);
-        let structures: Vec<Structure> =
-            unnamed.filter_map(|one| describe(setting, after, one.equation)).collect();
-        Diagnosis {
-            verdict: Verdict::CannotTell,
-            reasons: Vec::new(),
-            places: (0..nominal.equations()).map(|at| nominal.equation_name(at)).collect(),
-            before: left(before),
-            after: left(after),
-            given: given_effects(setting, after),
-            effects,
-            train: gaps(data.train, floors.train, &after.residual.train),
-            held_out: gaps(data.held_out, floors.held_out, &after.residual.held_out),
-            visible,
-            leftovers,
-            structures,
-            is_left_at_reversals: false,
-            curves: curves(
-                data.held_out,
-                [
-                    &setting.as_given(data.held_out),
-                    &before.residual.held_out,
-                    &after.residual.held_out,
-                ],
-            ),
-            logged: logged(data.held_out),
-            motion: moved.map(|moved| self.motion_gaps(moved)),
-            filters: *filters,
-            driven: [before, after].map(|state| driven_names(setting, state)),
-            steps: found.steps.clone(),
-        }
-    }
-
-    /// The gaps of the models before and after in motion.
-    fn motion_gaps(&self, moved: &Moved<'_>) -> Result<MotionGaps, Error> {
-        let Self { setting, filters, before, after, .. } = self;
-        let of = |logs: &[MeasuredLog]| -> Result<[MotionGap; 2], Error> {
-            let [before, after] = [before, after].map(|State { taken, z, .. }| {
-                let at = NominalAt { nominal: setting.data.train.nominal, z };
-                moved.gap(logs, filters.motion_hz, at, setting.effects(taken))
-            });
-            Ok([before?, after?])
-        };
-        Ok(MotionGaps { train: of(&moved.logs.train)?, held_out: of(&moved.logs.held_out)? })
-    }
+/// The gaps of the models before and after in motion.
+fn motion_gaps(
+    moved: &Moved<'_>,
+    setting: &Setting<'_>,
+    filters: Filters,
+    states: [&State; 2],
+) -> Result<MotionGaps, Error> {
+    let of = |logs: &[MeasuredLog]| -> Result<[MotionGap; 2], Error> {
+        let [before, after] = states.map(|one| moved.gap(logs, filters.motion_hz, setting, one));
+        Ok([before?, after?])
+    };
+    Ok(MotionGaps { train: of(&moved.logs.train)?, held_out: of(&moved.logs.held_out)? })
 }
 
 /// How often a search begins again with other numbers of the model, at most.
@@ -291,7 +270,7 @@ const MOST_MOVES: usize = 2;
 fn conditioned(logs: Vec<MeasuredLog>, filters: Filters) -> Result<Vec<Signals>, Error> {
     let of = |log: MeasuredLog| {
         let file = log.file.clone();
-        Signals::new(log, filters).map_err(|error| Error::condition(file, error))
+        Signals::new(log, filters).map_err(|error| Cause::Condition(file, error).into())
     };
     logs.into_iter().map(of).collect()
 }

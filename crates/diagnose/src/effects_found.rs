@@ -4,7 +4,7 @@
 use super::alias::{ExactAliases, Named};
 use super::candidate::Candidate;
 use super::error::Error;
-use super::experiment::{Ambiguity, Experiment, ExperimentOptions};
+use super::experiment::{Ambiguity, Experiment};
 use super::gap::Gap;
 use super::given::is_driven;
 use super::hypothesis::Hypothesis;
@@ -12,7 +12,8 @@ use super::law_curve::LawCurve;
 use super::rounds::Found;
 use super::search::Search;
 use super::signals::Filters;
-use super::state::{MOST_Z, Setting, State, Taken};
+use super::state::{MOST_Z, Setting, State};
+use super::weighing::Placed;
 use denavit_codegen::model::Robot;
 use denavit_evidence::policy;
 use denavit_plants::effect::LawParameter;
@@ -106,6 +107,10 @@ pub(super) fn found_effects(
         let without = search.settled(parts.clone(), Some(all));
         let taken = &after.taken[given + place];
         let reopened = setting.state(&parts, &before.z);
+        // Another law than what is there has other values in another motion (Chow 1960): errors
+        // have in them how far values by the logs for training are from those by all logs.
+        let by_all = all.values(place);
+        let std = |k: usize| after.deviations[given + place][k].hypot(taken.values[k] - by_all[k]);
         FoundEffect {
             candidate: taken.candidate,
             log_odds: all.posterior - without.posterior,
@@ -114,7 +119,7 @@ pub(super) fn found_effects(
             log_predicted: predicted - setting.log_predicted(&judging, &reopened),
             change_in_time: search.change_in_time(all, place),
             is_named: true,
-            parameters: values(setting, all, after, place),
+            parameters: values(setting, after, given + place, std),
             alternatives: alternatives(found, place),
             exact: Vec::new(),
             experiment: None,
@@ -124,38 +129,37 @@ pub(super) fn found_effects(
     (0..all.parts.len()).map(of).collect()
 }
 
-/// What else would do in a place, the most likely first.
-fn alternatives(found: &Found, place: usize) -> Vec<Alternative> {
+/// What else would do in a place.
+fn near(found: &Found, place: usize) -> impl Iterator<Item = &Hypothesis> {
     let now = found.after.posterior;
-    let near = |one: &&Hypothesis| now - one.posterior < policy::RIVAL;
-    let rivals = found.rivals.get(place).into_iter().flatten().filter(near);
-    rivals
-        .map(|one| Alternative {
-            candidate: one.parts[place].placed.candidate,
-            values: one.values(place),
-            log_odds: now - one.posterior,
-            is_exact: false,
-        })
-        .collect()
+    let rivals = found.rivals.get(place).into_iter().flatten();
+    rivals.filter(move |one| now - one.posterior < policy::RIVAL)
 }
 
-/// The parameters of an effect that was found. Their errors have in them how far values by the logs
-/// for training are from those by all logs: another law than what is there has other values in
-/// another motion (Chow 1960).
+/// The same as it is told, the most likely first.
+fn alternatives(found: &Found, place: usize) -> Vec<Alternative> {
+    let of = |one: &Hypothesis| Alternative {
+        candidate: one.parts[place].placed.candidate,
+        values: one.values(place),
+        log_odds: found.after.posterior - one.posterior,
+        is_exact: false,
+    };
+    near(found, place).map(of).collect()
+}
+
+/// The parameters of an effect of a state, each with an error.
 fn values(
     setting: &Setting<'_>,
-    all: &Hypothesis,
     state: &State,
-    place: usize,
+    own: usize,
+    std: impl Fn(usize) -> f64,
 ) -> Vec<EffectValue> {
-    let own = setting.given.len() + place;
     let taken = &state.taken[own];
     let parameters = setting.candidates[taken.candidate].law.parameters();
-    let by_all = all.values(place);
     let value = |(k, parameter): (usize, &LawParameter)| EffectValue {
         name: parameter.name.clone(),
         value: taken.values[k],
-        std: state.deviations[own][k].hypot(taken.values[k] - by_all[k]),
+        std: std(k),
         unit: parameter.unit.clone(),
     };
     parameters.iter().enumerate().map(value).collect()
@@ -182,19 +186,9 @@ pub(super) fn tell_aliases(
 
 /// What these logs say of the effects that the model has.
 pub(super) fn given_effects(setting: &Setting<'_>, state: &State) -> Vec<GivenEffect> {
-    let of = |place: usize| {
-        let taken = &state.taken[place];
-        let parameters = setting.candidates[taken.candidate].law.parameters();
-        let value = |(k, parameter): (usize, &LawParameter)| EffectValue {
-            name: parameter.name.clone(),
-            value: taken.values[k],
-            std: state.deviations[place][k],
-            unit: parameter.unit.clone(),
-        };
-        GivenEffect {
-            candidate: taken.candidate,
-            parameters: parameters.iter().enumerate().map(value).collect(),
-        }
+    let of = |place: usize| GivenEffect {
+        candidate: state.taken[place].candidate,
+        parameters: values(setting, state, place, |k| state.deviations[place][k]),
     };
     (0..setting.given.len()).map(of).collect()
 }
@@ -231,23 +225,26 @@ const MOST_RIVALS: usize = 3;
 /// Looks for motions that tell what was found from what would do as well.
 pub(super) fn separate(
     setting: &Setting<'_>,
-    robot: &Robot,
-    options: &ExperimentOptions,
-    state: &State,
+    (robot, seed): (&Robot, u64),
+    (found, state): (&Found, &State),
     filters: Filters,
-    found: &mut [FoundEffect],
+    effects: &mut [FoundEffect],
 ) {
     let given = setting.given.len();
-    for (place, one) in found.iter_mut().enumerate() {
-        let rivals = one.alternatives.iter().filter(|other| !other.is_exact).take(MOST_RIVALS);
-        let rivals: Vec<Taken> = rivals
-            .map(|other| Taken { candidate: other.candidate, values: other.values.clone() })
-            .collect();
+    for (place, one) in effects.iter_mut().enumerate() {
+        let rivals = near(found, place).zip(&one.alternatives);
+        let rivals = rivals.filter(|(_, other)| !other.is_exact).take(MOST_RIVALS);
+        let of = |(hypothesis, other): (&Hypothesis, &Alternative)| Placed {
+            values: other.values.clone(),
+            ..hypothesis.parts[place].placed.clone()
+        };
+        let rivals: Vec<Placed> = rivals.map(of).collect();
         if rivals.is_empty() {
             continue;
         }
         let mut others = state.taken.clone();
-        let own = others.remove(given + place);
+        let values = others.remove(given + place).values;
+        let own = Placed { values, ..found.after.parts[place].placed.clone() };
         let ambiguity = Ambiguity {
             nominal: setting.data.train.nominal,
             candidates: setting.candidates,
@@ -258,6 +255,6 @@ pub(super) fn separate(
             names: [vec![own], rivals].concat(),
             others,
         };
-        one.experiment = Some(ambiguity.separate(robot, options));
+        one.experiment = Some(ambiguity.separate(robot, seed));
     }
 }

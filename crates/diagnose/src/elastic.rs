@@ -9,6 +9,7 @@
 //! angles. It has neither friction of the drive nor noise of its torque, but steps of encoders
 //! times the stiffness.
 
+use crate::policy::nominal::JOINT;
 use denavit_codegen::model::Robot;
 use denavit_measure::JointIndex;
 use denavit_measure::log::MeasuredLog;
@@ -20,16 +21,20 @@ pub struct BeforeSprings {
     /// The robot with these drives before their springs.
     pub robot: Robot,
     /// The springs.
-    pub springs: Vec<SeriesSpring>,
+    pub springs: Vec<Spring>,
 }
 
-/// A spring between a motor and its joint.
+/// A spring between a motor and its joint, on the side of the joint.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SeriesSpring {
-    /// The joint.
+pub struct Spring {
+    /// Its joint.
     pub joint: JointIndex,
-    /// What the model says of its stiffness.
-    pub stiffness: SpringStiffness,
+    /// The name of its stiffness.
+    pub name: String,
+    /// Its stiffness [N m/rad, N/m].
+    pub stiffness: f64,
+    /// The standard deviation of that: as the model states it, or else as of joints.
+    pub std: f64,
 }
 
 /// Brings the logs' motors to the side of their joints, and gives back the robot with these drives
@@ -65,9 +70,12 @@ pub fn before_springs(
         let BeforeSprings { robot: moved, springs } = moved
             .get_or_insert_with(|| BeforeSprings { robot: robot.clone(), springs: Vec::new() });
         let stiffness = joints[place].spring.clone().filter(|spring| spring.value > 0.0);
-        springs.extend(
-            stiffness.map(|stiffness| SeriesSpring { joint: JointIndex(place), stiffness }),
-        );
+        springs.extend(stiffness.map(|SpringStiffness { name, value: stiffness, std }| Spring {
+            joint: JointIndex(place),
+            name,
+            stiffness,
+            std: std.unwrap_or(JOINT * stiffness),
+        }));
         let Some(drive) = &mut moved.links[link].drive else { continue };
         if let Some(spring) = drive.series_elastic.take() {
             let gear = drive.gear_ratio.unwrap_or_else(|| moved.dag.integer(1));

@@ -11,34 +11,46 @@
 //! turns around does not ring on. The load is taken up to the frequency that references drive:
 //! beyond it, two derivatives are of noise.
 
-use super::law::{Law, Motion, Response};
+use super::joint_law::JointLaw;
+use super::law::{Motion, Response, differences};
 use super::signals::Signals;
 use crate::policy::elastic_law::DIFFERENCE;
-use denavit_measure::JointIndex;
 use denavit_measure::condition::Butterworth;
-use denavit_plants::effect::{Drive, EffectLaw, GivesWay, LawParameter};
+use denavit_plants::effect::{Drive, GivesWay};
 
 /// Order of one pass of the filter of loads.
 const ORDER: usize = 4;
 
-/// A transmission that is a spring and a damper.
-pub(super) struct ElasticLaw {
-    /// The law, without play.
-    pub(super) law: EffectLaw,
-    /// Its joint.
-    pub(super) joint: JointIndex,
-}
+impl JointLaw {
+    /// What a drive takes through a transmission that is a spring and a damper, without play; none
+    /// of a motor that is measured, which is where it is.
+    pub(super) fn through_spring(&self, motion: &Motion<'_>, values: &[f64]) -> Option<Response> {
+        let (joint, signals) = (self.joint, motion.signals);
+        if signals.motor[joint.0].is_some() {
+            return None;
+        }
+        let mut load = signals.cell_means(&motion.load[joint.0]);
+        if let Some(filter) = Butterworth::new(ORDER, signals.driven_hz(), signals.log_step_s) {
+            filter.zero_phase(&mut load);
+        }
+        let of = |values: &[f64]| vec![self.ahead(signals, motion.drives[joint.0], &load, values)];
+        let step = |place: usize| {
+            let start = self.law.parameters[place].start.first().copied().unwrap_or(1.0);
+            DIFFERENCE * if values[place] > 0.0 { values[place] } else { start }
+        };
+        let torque = of(values);
+        let gradient = differences(of, &torque, values, step);
+        Some(Response { equations: vec![joint.0], torque, gradient })
+    }
 
-impl ElasticLaw {
     /// What a drive takes more than if it moved with its joint, whose load is at the log's samples
     /// [N m, N].
-    fn torque(&self, signals: &Signals, drive: Drive, load: &[f64], values: &[f64]) -> Vec<f64> {
-        let Some(GivesWay { swing_s, damping, .. }) = self.law.gives_way(values) else {
+    fn ahead(&self, signals: &Signals, drive: Drive, load: &[f64], values: &[f64]) -> Vec<f64> {
+        let gives_way = self.law.gives_way(values);
+        let is_soft = |own: &GivesWay| own.swing_s > 0.0 && drive.inertia > 0.0;
+        let Some(GivesWay { swing_s, damping, .. }) = gives_way.filter(is_soft) else {
             return vec![0.0; signals.samples()];
         };
-        if swing_s <= 0.0 || drive.inertia <= 0.0 {
-            return vec![0.0; signals.samples()];
-        }
         let stiffness = drive.inertia / (swing_s * swing_s);
         let lag_s = 2.0 * damping * swing_s;
         let ahead = deflections(load, stiffness, lag_s / signals.log_step_s);
@@ -67,38 +79,6 @@ fn deflections(load: &[f64], stiffness: f64, lag: f64) -> Vec<f64> {
         ahead
     };
     load.iter().map(of).collect()
-}
-
-impl Law for ElasticLaw {
-    fn parameters(&self) -> &[LawParameter] {
-        &self.law.parameters
-    }
-
-    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
-        let (joint, signals) = (self.joint, motion.signals);
-        let nothing = || vec![0.0; signals.samples()];
-        // A motor that is measured is where it is.
-        if signals.motor[joint.0].is_some() {
-            let gradient = values.iter().map(|_| vec![nothing()]).collect();
-            return Response { equations: vec![joint.0], torque: vec![nothing()], gradient };
-        }
-        let mut load = signals.cell_means(&motion.load[joint.0]);
-        if let Some(filter) = Butterworth::new(ORDER, signals.driven_hz(), signals.log_step_s) {
-            filter.zero_phase(&mut load);
-        }
-        let of = |values: &[f64]| self.torque(signals, motion.drives[joint.0], &load, values);
-        let torque = of(values);
-        let by = |place: usize| {
-            let start = self.law.parameters[place].start.first().copied().unwrap_or(1.0);
-            let size = if values[place] > 0.0 { values[place] } else { start };
-            let mut moved = values.to_vec();
-            moved[place] += DIFFERENCE * size;
-            let slope = torque.iter().zip(of(&moved)).map(|(a, b)| (b - a) / (DIFFERENCE * size));
-            vec![slope.collect()]
-        };
-        let gradient = (0..values.len()).map(by).collect();
-        Response { equations: vec![joint.0], torque: vec![torque], gradient }
-    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,7 @@
 //! Why nothing is diagnosed.
 
 use super::diagnosis::Request;
-use super::experiment::NoExperiment;
-use super::simulated::NotMoved;
+use denavit_codegen::model::ModelError;
 use denavit_measure::log::MeasuredLog;
 use std::fmt;
 
@@ -26,24 +25,29 @@ pub enum ErrorKind {
     NoExperiment,
 }
 
-/// What is wrong.
+/// What is wrong. A log is held by its name.
 #[derive(Clone, Debug, PartialEq)]
-enum Cause {
+pub(super) enum Cause {
     /// There is no log to search, or none to judge with.
     NoLog,
-    /// A log has no torque of any joint; holds its name.
+    /// A log has no torque of any joint.
     NoTorque(String),
     /// A log cannot be filtered.
-    Condition {
-        /// The log's name.
-        file: String,
-        /// Why.
-        error: denavit_measure::Error,
-    },
-    /// A model is not moved.
-    Moved(NotMoved),
-    /// Names are not told apart.
-    Experiment(NoExperiment),
+    Condition(String, denavit_measure::Error),
+    /// A model is not moved along logs, for a reason in words.
+    NotMoved(String),
+    /// Its file with what was found is not that of a model.
+    Unsound(Box<ModelError>),
+    /// It cannot be simulated.
+    Plant(denavit_plants::Error),
+    /// A log that it is moved along cannot be filtered.
+    Motion(String, denavit_measure::Error),
+    /// A log cannot be simulated again.
+    Forward(String, denavit_identify::Error),
+    /// No motion tells names apart, for a reason in words.
+    NoExperiment(String),
+    /// The robot has no limits to stay within, or none that let it move.
+    Limits(denavit_excite::Error),
 }
 
 impl Error {
@@ -52,9 +56,13 @@ impl Error {
         match &*self.0 {
             Cause::NoLog => ErrorKind::NoLog,
             Cause::NoTorque(_) => ErrorKind::NoTorque,
-            Cause::Condition { .. } => ErrorKind::Condition,
-            Cause::Moved(_) => ErrorKind::NotMoved,
-            Cause::Experiment(_) => ErrorKind::NoExperiment,
+            Cause::Condition(..) => ErrorKind::Condition,
+            Cause::NotMoved(_)
+            | Cause::Unsound(_)
+            | Cause::Plant(_)
+            | Cause::Motion(..)
+            | Cause::Forward(..) => ErrorKind::NotMoved,
+            Cause::NoExperiment(_) | Cause::Limits(_) => ErrorKind::NoExperiment,
         }
     }
 
@@ -62,15 +70,11 @@ impl Error {
     pub fn log(&self) -> Option<&str> {
         match &*self.0 {
             Cause::NoTorque(file)
-            | Cause::Condition { file, .. }
-            | Cause::Moved(NotMoved::Condition(file, _) | NotMoved::Forward(file, _)) => Some(file),
+            | Cause::Condition(file, _)
+            | Cause::Motion(file, _)
+            | Cause::Forward(file, _) => Some(file),
             _ => None,
         }
-    }
-
-    /// A log that cannot be filtered.
-    pub(super) fn condition(file: String, error: denavit_measure::Error) -> Self {
-        Cause::Condition { file, error }.into()
     }
 
     /// What keeps a request from being answered, whatever is in its logs.
@@ -95,7 +99,7 @@ impl fmt::Display for Error {
                 "{file}: no joint has a torque\n  hint: give columns `tau_JOINT`, or name them \
                  with `logs.columns`"
             ),
-            Cause::Condition { file, error } => match error.rows() {
+            Cause::Condition(file, error) => match error.rows() {
                 Some([samples, needed]) => write!(
                     f,
                     "{file}: {samples} rows: with its edges cut off by the filters a log needs at \
@@ -103,8 +107,12 @@ impl fmt::Display for Error {
                 ),
                 None => write!(f, "{file}: {error}"),
             },
-            Cause::Moved(error) => write!(f, "{error}"),
-            Cause::Experiment(error) => write!(f, "{error}"),
+            Cause::NotMoved(reason) | Cause::NoExperiment(reason) => write!(f, "{reason}"),
+            Cause::Unsound(error) => write!(f, "{error}"),
+            Cause::Plant(error) => write!(f, "{error}"),
+            Cause::Motion(file, error) => write!(f, "{file}: {error}"),
+            Cause::Forward(file, error) => write!(f, "{file}: {error}"),
+            Cause::Limits(error) => write!(f, "{error}"),
         }
     }
 }
@@ -112,12 +120,11 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match &*self.0 {
-            Cause::Condition { error, .. } => Some(error),
-            Cause::Moved(NotMoved::Condition(_, error)) => Some(error),
-            Cause::Moved(NotMoved::Plant(error)) => Some(error),
-            Cause::Moved(NotMoved::Forward(_, error)) => Some(error),
-            Cause::Moved(NotMoved::Unsound(error)) => Some(error.as_ref()),
-            Cause::Experiment(NoExperiment::Limits(error)) => Some(error),
+            Cause::Condition(_, error) | Cause::Motion(_, error) => Some(error),
+            Cause::Unsound(error) => Some(error.as_ref()),
+            Cause::Plant(error) => Some(error),
+            Cause::Forward(_, error) => Some(error),
+            Cause::Limits(error) => Some(error),
             _ => None,
         }
     }
@@ -126,17 +133,5 @@ impl std::error::Error for Error {
 impl From<Cause> for Error {
     fn from(cause: Cause) -> Self {
         Self(Box::new(cause))
-    }
-}
-
-impl From<NotMoved> for Error {
-    fn from(error: NotMoved) -> Self {
-        Cause::Moved(error).into()
-    }
-}
-
-impl From<NoExperiment> for Error {
-    fn from(error: NoExperiment) -> Self {
-        Cause::Experiment(error).into()
     }
 }

@@ -61,7 +61,11 @@ impl Search<'_> {
                 better.map(|one| self.settled(one.parts.clone(), Some(one)))
             };
             let Some(next) = next else {
-                rivals[place] = Some(self.rivals(&now, place, all));
+                // A better formula of the same is no rival of the plain name.
+                all.retain(|one| {
+                    one.posterior <= now.posterior || !self.is_plainer(&now, one, place)
+                });
+                rivals[place] = Some(all);
                 continue;
             };
             (now, exchanges) = (next, exchanges + 1);
@@ -79,7 +83,7 @@ impl Search<'_> {
     /// be added to it.
     fn is_missing_beside(&self, own: &Part, one: &Hypothesis) -> bool {
         let place = one.parts.len();
-        if place == self.options.most_effects {
+        if place == self.most {
             return false;
         }
         let parts = [&one.parts[..], std::slice::from_ref(own)].concat();
@@ -90,14 +94,6 @@ impl Search<'_> {
         both.posterior - one.posterior > policy::NAMED
             && self.is_worth(one, &both, place)
             && self.is_worth(&without, &both, place - 1)
-    }
-
-    /// What else would do in a place. A better formula of the same is no rival of the plain name.
-    fn rivals(&self, now: &Hypothesis, place: usize, mut all: Vec<Hypothesis>) -> Vec<Hypothesis> {
-        let is_named =
-            |one: &Hypothesis| one.posterior > now.posterior && self.is_plainer(now, one, place);
-        all.retain(|one| !is_named(one));
-        all
     }
 
     /// What is better in a place than what is there: of all hypotheses, and the present one, the
@@ -112,8 +108,7 @@ impl Search<'_> {
     ) -> Option<&'h Hypothesis> {
         let best = all.iter().find(|one| self.is_worth(rest, one, place))?;
         let best = if best.posterior > now.posterior { best } else { now };
-        let plain = all.iter().chain([now]).filter(|one| self.is_plainer(one, best, place));
-        let plainest = plain.max_by(|a, b| a.posterior.total_cmp(&b.posterior)).unwrap_or(best);
+        let plainest = self.plainest(best, place, all.iter().chain([now]));
         (plainest.candidates() != now.candidates()).then_some(plainest)
     }
 
@@ -139,7 +134,7 @@ impl Search<'_> {
             let all = self.with_one_more(&rest, &others, &is_there, None);
             let best = all.iter().find(|one| self.is_worth(&rest, one, one.parts.len() - 1));
             if let Some(best) = best.filter(|one| one.posterior > now.posterior) {
-                let next = self.plainest(best, best.parts.len() - 1, &all);
+                let next = self.plainest(best, best.parts.len() - 1, all.iter());
                 return Some(self.settled(next.parts.clone(), Some(next)));
             }
         }

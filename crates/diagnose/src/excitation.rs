@@ -1,6 +1,6 @@
 //! What logs would have shown: an answer that nothing is missing says no more than that.
 
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{Hypothesis, Part};
 use super::search::Search;
 use super::state::Setting;
 use crate::policy::excitation::{LARGE, LEAST_RANGE, NEVER};
@@ -21,61 +21,40 @@ pub struct Visible {
     pub share: f64,
 }
 
-/// Why the logs say too little of a joint.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Unseen {
-    /// Of so many effects so many would not be seen though they were half of its torque.
-    Effects {
-        /// The joint.
-        joint: JointIndex,
-        /// Those that would not be seen.
-        unseen: usize,
-        /// Those that were looked at.
-        of: usize,
-    },
-    /// It does not move.
-    Rest {
-        /// The joint.
-        joint: JointIndex,
-    },
-    /// It covers a small share of what its limits let it.
-    Range {
-        /// The joint.
-        joint: JointIndex,
-        /// The share of its positions, or of its speed.
-        share: f64,
-        /// Whether it is that of its speed.
-        is_speed: bool,
-    },
-}
-
-/// How small effects of one parameter would have been seen.
-pub(super) fn visible(
-    setting: &Setting<'_>,
-    search: &Search<'_>,
-    after: &Hypothesis,
-) -> Vec<Visible> {
-    // What lowers the squares by that has the odds that a name asks for.
-    let errors = search.least_errors();
-    let of = |(candidate, error, share): (usize, f64, f64)| {
-        let joint = setting.candidates[candidate].joint?;
+/// How small effects of one parameter would have been seen beside what was found.
+pub(super) fn visible(search: &Search<'_>, after: &Hypothesis) -> Vec<Visible> {
+    // Errors from which on an effect has the odds that a name asks for.
+    let errors = (2.0 * (policy::NAMED + search.log_choices)).sqrt();
+    let (glance, there) = (search.glance(after, &after.parts), after.candidates());
+    let of = |(candidate, own): (usize, &Vec<Part>)| {
+        let (part, joint) = (own.first()?, search.weighing.candidates[candidate].joint?);
+        if part.terms.len() != 1 || there.contains(&candidate) {
+            return None;
+        }
+        let error = glance.see(&part.terms).precision[0].sqrt().recip();
+        let share = error * search.weighing.spectra.share(&part.terms.columns[0], joint.0);
         // What the model's own numbers explain whole is left as rounding.
         let seen = if share < NEVER { errors } else { f64::INFINITY };
         let worth = (policy::WORTH / share).max(seen);
-        Some(Visible { candidate, joint, least: worth * error, share: worth * share })
+        let least = worth * (error * part.placed.deviations[0]);
+        Some(Visible { candidate, joint, least, share: worth * share })
     };
-    search.precisions(after).into_iter().filter_map(of).collect()
+    search.screen.iter().enumerate().filter_map(of).collect()
 }
 
-/// Joints of which the logs say too little for the answer that nothing is missing.
-pub(super) fn unseen(setting: &Setting<'_>, visible: &[Visible]) -> Vec<Unseen> {
-    let joints = &setting.data.train.nominal.model.joints;
+/// Why the logs say too little of joints for the answer that nothing is missing, in words.
+pub(super) fn unseen(setting: &Setting<'_>, visible: &[Visible]) -> Vec<String> {
     let mut found = Vec::new();
-    for (joint, described) in joints.iter().enumerate() {
+    for (joint, described) in setting.data.train.nominal.model.joints.iter().enumerate() {
+        let name = &described.name;
+        let mut says = |why: String| found.push(format!("too little excitation: {why}"));
         let own = || visible.iter().filter(|one| one.joint.0 == joint);
         let (unseen, of) = (own().filter(|one| one.share > LARGE).count(), own().count());
         if 2 * unseen > of {
-            found.push(Unseen::Effects { joint: JointIndex(joint), unseen, of });
+            says(format!(
+                "of {of} effects {unseen} would not be seen at {name} though they were half of its \
+                 torque"
+            ));
         }
         let signals = || setting.data.train.signals.iter();
         let range = |values: &mut dyn Iterator<Item = f64>| {
@@ -86,42 +65,16 @@ pub(super) fn unseen(setting: &Setting<'_>, visible: &[Visible]) -> Vec<Unseen> 
         let [least, most] =
             range(&mut signals().flat_map(|log| log.position_noise[joint].iter().copied()));
         if high - low <= most - least {
-            found.push(Unseen::Rest { joint: JointIndex(joint) });
+            says(format!("{name} does not move"));
         }
         let fastest =
             signals().flat_map(|log| &log.qd[joint]).fold(0.0, |a: f64, v| a.max(v.abs()));
-        let of_range = described.position_limits.map(|[l, h]| ((high - low) / (h - l), false));
-        let of_speed = described.velocity_limit.map(|limit| (fastest / limit, true));
+        let of_range = described.position_limits.map(|[l, h]| ((high - low) / (h - l), "range"));
+        let of_speed = described.velocity_limit.map(|limit| (fastest / limit, "speed"));
         let shares = [of_range, of_speed].into_iter().flatten();
-        let small = shares.filter(|(share, _)| *share < LEAST_RANGE);
-        found.extend(small.map(|(share, is_speed)| Unseen::Range {
-            joint: JointIndex(joint),
-            share,
-            is_speed,
-        }));
-    }
-    found
-}
-
-impl Unseen {
-    /// The reason in words, with the names of joints.
-    pub(super) fn sentence(&self, names: &[&str]) -> String {
-        let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-        match self {
-            Self::Effects { joint, unseen, of } => format!(
-                "too little excitation: of {of} effects {unseen} would not be seen at {} though \
-                 they were half of its torque",
-                names[joint.0]
-            ),
-            Self::Rest { joint } => {
-                format!("too little excitation: {} does not move", names[joint.0])
-            }
-            Self::Range { joint, share, is_speed } => format!(
-                "too little excitation: {} covers {} of {}",
-                names[joint.0],
-                percent(*share),
-                if *is_speed { "its speed" } else { "its range" }
-            ),
+        for (share, what) in shares.filter(|(share, _)| *share < LEAST_RANGE) {
+            says(format!("{name} covers {:.1} % of its {what}", 100.0 * share));
         }
     }
+    found
 }

@@ -1,53 +1,40 @@
 //! The separating experiment: a motion within the limits of the robot that tells names apart which
 //! the logs do not.
 //!
-//! What one effect does to the torques of a motion is fitted by another one, with everything that
-//! the model is not sure of: what is left, over the noise floor of the logs, is their separation.
-//! The motion makes the least of these large. What it will say is then simulated: torques of the
-//! one or the other, with the noise of the logs, told apart as a diagnosis does.
+//! A log of each name is simulated along a motion, with the noise of the logs, and the names are
+//! weighed in it as a diagnosis does: by the evidence of each, with everything that the model is
+//! not sure of. The motion makes the least odds of a name that is there large; how often these are
+//! what a name asks for is its power.
 
-use super::blocks::{block_costs, paired};
 use super::candidate::Candidate;
-use super::data::{Data, ModelTorques};
-use super::error::Error;
-use super::floor::{NoiseFloor, rms};
+use super::data::Data;
+use super::error::{Cause, Error};
+use super::floor::rms;
 use super::followed::Follower;
+use super::hypothesis::Part;
 use super::nominal::Nominal;
-use super::problem::{Fitted, Problem};
+use super::search::Search;
 use super::signals::{Filters, Signals};
-use super::state::{Taken, within};
-use super::turning::turning;
-use crate::policy::experiment::{DISTINCT, ROWS_PER_SAMPLE};
+use super::state::{Effects, Taken};
+use super::weighing::{Placed, Weighing, add};
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::functions::modelled;
+use denavit_evidence::{Spectrum, policy};
 use denavit_excite::{Ends, ExciteOptions, Family, Feasible};
+use denavit_measure::JointIndex;
 use denavit_measure::log::{JointSignals, MeasuredLog};
-use denavit_measure::{JointIndex, LogIndex};
 use denavit_numerics::Random;
 use denavit_plants::trajectory::Reference;
 use serde_json::{Value, json};
-use std::fmt;
 
-/// How an experiment is looked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ExperimentOptions {
-    /// Length of a lap \[s\].
-    pub duration_s: f64,
-    /// Motions at random of which the best is improved.
-    pub starts: usize,
-    /// Motions that are tried to improve it.
-    pub steps: usize,
-    /// Logs that are simulated of each name.
-    pub draws: usize,
-    /// Of all that is drawn.
-    pub seed: u64,
-}
+/// Length of a lap \[s\].
+const LAP_S: f64 = 10.0;
 
-impl Default for ExperimentOptions {
-    fn default() -> Self {
-        Self { duration_s: 10.0, starts: 9, steps: 24, draws: 20, seed: 1 }
-    }
-}
+/// Motions at random of which the best is improved, motions that are tried to improve it, and logs
+/// that are simulated of each name.
+const STARTS: usize = 9;
+const STEPS: usize = 24;
+const DRAWS: usize = 20;
 
 /// Harmonics of the Fourier series that joints follow: few go far, many are fast.
 const HARMONICS: [usize; 3] = [2, 3, 5];
@@ -63,40 +50,16 @@ pub struct Experiment {
     pub file: Value,
     /// Length of a lap \[s\].
     pub duration_s: f64,
-    /// The least separation of two names: what the one leaves of the other, root of the sum of
-    /// squares over deviations of noise, samples that noise makes alike counted once.
+    /// The least separation of two names: root of twice the log odds of the one that is there, in a
+    /// simulated log; 0 where the other one has them.
     pub separation: f64,
     /// The same of the motion of the logs.
     pub separation_before: f64,
-    /// The share of simulated logs in which the right name was told from each other one by so many
-    /// standard errors as a diagnosis asks for.
+    /// The share of simulated logs in which the right name has the odds that a name asks for,
+    /// against each other one.
     pub power: f64,
     /// How many logs were simulated.
     pub draws: usize,
-}
-
-/// Why there is no experiment.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum NoExperiment {
-    /// The robot has no limits to stay within, or none that let it move.
-    Limits(denavit_excite::Error),
-    /// Even rest exceeds a limit.
-    Rest,
-    /// The motor of a joint was measured, and the model gives the spring behind it no stiffness, so
-    /// that nothing says how its motor moves: holds the joint.
-    NoStiffness(String),
-}
-
-impl fmt::Display for NoExperiment {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Limits(error) => write!(f, "{error}"),
-            Self::Rest => write!(f, "even at rest a limit of the robot is exceeded"),
-            Self::NoStiffness(joint) => {
-                write!(f, "the model has no stiffness of the spring behind the motor of `{joint}`")
-            }
-        }
-    }
 }
 
 /// What names are to be told apart in: the state of a diagnosis.
@@ -106,44 +69,38 @@ pub(super) struct Ambiguity<'a> {
     /// A log, its filters and its floor: as the next one will be.
     pub(super) log: &'a Signals,
     pub(super) filters: Filters,
-    pub(super) floor: &'a NoiseFloor,
+    pub(super) floor: &'a [f64],
     /// The nominal model's own parameters, in their deviations.
     pub(super) z: &'a [f64],
     /// The names: what was found, then what would do as well.
-    pub(super) names: Vec<Taken>,
+    pub(super) names: Vec<Placed>,
     /// The other effects, which are there in any case.
     pub(super) others: Vec<Taken>,
 }
 
 /// A motion with what the names do there.
-struct Seen<'a> {
-    data: Data<'a>,
-    torques: Vec<ModelTorques>,
-    deviation: Vec<f64>,
-    /// For each name its rows.
-    names: Vec<Vec<f64>>,
+struct Seen<'s, 'a> {
+    search: Search<'a>,
+    data: &'s Data<'a>,
+    names: Vec<Part>,
+    floor: &'s [f64],
 }
 
 impl Ambiguity<'_> {
     /// Looks for an experiment.
-    pub(super) fn separate(
-        &self,
-        robot: &Robot,
-        options: &ExperimentOptions,
-    ) -> Result<Experiment, Error> {
+    pub(super) fn separate(&self, robot: &Robot, seed: u64) -> Result<Experiment, Error> {
         let nominal = self.nominal;
         let is_lost = |joint: &usize| {
             self.log.motor[*joint].is_some()
                 && nominal.spring_equation(JointIndex(*joint)).is_none()
         };
         if let Some(joint) = (0..nominal.model.joints.len()).find(is_lost) {
-            let joint = nominal.model.joints[joint].name.clone();
-            return Err(NoExperiment::NoStiffness(joint).into());
+            return Err(Cause::NoExperiment(nominal.lacks_stiffness(JointIndex(joint))).into());
         }
         let of_harmonics = |harmonics: usize| {
             let excite = ExciteOptions {
                 family: Family::Fourier { harmonics },
-                duration_s: options.duration_s,
+                duration_s: LAP_S,
                 // The motor before a spring is ahead by what accelerations take, and must not jump.
                 ends: Ends {
                     at_rest: true,
@@ -151,21 +108,25 @@ impl Ambiguity<'_> {
                     closed: true,
                 },
                 with: modelled(robot),
-                seed: options.seed,
+                seed,
                 ..ExciteOptions::default()
             };
             Feasible::new(robot, &excite)
         };
         let spaces = HARMONICS.into_iter().map(of_harmonics).collect::<Result<Vec<_>, _>>();
-        let mut spaces = spaces.map_err(NoExperiment::Limits)?;
-        let found = self.best(&mut spaces, options).ok_or(NoExperiment::Rest)?;
-        let (separation, x, space) = found;
+        let mut spaces = spaces.map_err(Cause::Limits)?;
+        let rest = || "even at rest a limit of the robot is exceeded".to_owned();
+        let found = self.best(&mut spaces, seed);
+        let (odds, x, space) = found.ok_or_else(|| Cause::NoExperiment(rest()))?;
+        let separation = separation_of(odds);
         let feasible = &spaces[space];
         let references = feasible.references(&x);
-        let seen = self.log_of(&references, options).and_then(|log| self.seen(log));
-        let power = seen.map_or(0.0, |seen| self.power(&seen, options));
+        let power =
+            self.log_of(&references).and_then(|log| self.seen(log, |seen| seen.power(seed)));
+        let power = power.unwrap_or(0.0);
         let rivals: Vec<usize> = self.names[1..].iter().map(|one| one.candidate).collect();
-        let separation_before = self.seen(self.log.clone()).map_or(0.0, |seen| self.least(&seen));
+        let before = self.seen(self.log.clone(), |seen| seen.least(seed));
+        let separation_before = separation_of(before.unwrap_or(0.0));
         let name = |candidate: usize| self.candidates[candidate].name();
         let remarks = json!({
             "separates": name(self.names[0].candidate),
@@ -173,45 +134,41 @@ impl Ambiguity<'_> {
             "separation": separation,
             "separation_before": separation_before,
             "power": power,
-            "draws": options.draws,
-            "seed": options.seed,
+            "draws": DRAWS,
+            "seed": seed,
         });
         let title = format!("{}_separating", self.nominal.model.model);
         Ok(Experiment {
             file: feasible.to_json(&x, &title, &remarks),
             rivals,
             references,
-            duration_s: options.duration_s,
+            duration_s: LAP_S,
             separation,
             separation_before,
             power,
-            draws: options.draws,
+            draws: DRAWS,
         })
     }
 
-    /// The motion of the largest separation, with its space: the best of some at random, moved at
-    /// random as long as that makes it better.
-    fn best(
-        &self,
-        spaces: &mut [Feasible],
-        options: &ExperimentOptions,
-    ) -> Option<(f64, Vec<f64>, usize)> {
+    /// The motion of the largest odds of names that are there, with its space: the best of some at
+    /// random, moved at random as long as that makes it better.
+    fn best(&self, spaces: &mut [Feasible], seed: u64) -> Option<(f64, Vec<f64>, usize)> {
         let mut best: Option<(f64, Vec<f64>, usize)> = None;
         let is_better = |best: &Option<(f64, Vec<f64>, usize)>, value: f64| {
             value.is_finite() && best.as_ref().is_none_or(|(most, ..)| value > *most)
         };
-        for start in 0..options.starts {
+        for start in 0..STARTS {
             let space = start % spaces.len();
             let feasible = &mut spaces[space];
             let Some(x) = feasible.random(start) else { continue };
-            let value = self.value(feasible, &x, options);
+            let value = self.value(feasible, &x, seed);
             if is_better(&best, value) {
                 best = Some((value, x, space));
             }
         }
-        let mut random = Random::new(options.seed);
+        let mut random = Random::new(seed);
         let mut reach = 0.5;
-        for _ in 0..options.steps {
+        for _ in 0..STEPS {
             let Some((_, x, space)) = &best else { break };
             let (size, space) = (rms(x), *space);
             // Also larger, until a limit is reached.
@@ -219,7 +176,7 @@ impl Ambiguity<'_> {
             let moved = x.iter().map(|x| larger * x + reach * size * random.normal()).collect();
             let feasible = &mut spaces[space];
             let Some(moved) = feasible.within(moved) else { continue };
-            let value = self.value(feasible, &moved, options);
+            let value = self.value(feasible, &moved, seed);
             if is_better(&best, value) {
                 best = Some((value, moved, space));
                 reach = f64::min(1.0, 1.3 * reach);
@@ -230,31 +187,27 @@ impl Ambiguity<'_> {
         best
     }
 
-    fn value(&self, feasible: &Feasible, x: &[f64], options: &ExperimentOptions) -> f64 {
-        let log = self.log_of(&feasible.references(x), options);
-        let seen = log.and_then(|log| self.seen(log));
-        seen.map_or(f64::NEG_INFINITY, |seen| self.least(&seen))
+    fn value(&self, feasible: &Feasible, x: &[f64], seed: u64) -> f64 {
+        let log = self.log_of(&feasible.references(x));
+        let least = log.and_then(|log| self.seen(log, |seen| seen.least(seed)));
+        least.unwrap_or(f64::NEG_INFINITY)
     }
 
     /// One lap, and as much of the next as the edges of filters take; none if no motion of motors
     /// before springs makes the joints follow.
-    fn log_of(&self, references: &[Reference], options: &ExperimentOptions) -> Option<Signals> {
+    fn log_of(&self, references: &[Reference]) -> Option<Signals> {
         let step_s = self.log.log_step_s;
-        let rows = (1.1 * options.duration_s / step_s) as usize;
+        let rows = (1.1 * LAP_S / step_s) as usize;
         let position = |reference: &Reference| -> Vec<f64> {
-            (0..rows)
-                .map(|k| reference.at((step_s * k as f64) % options.duration_s).position)
-                .collect()
+            (0..rows).map(|k| reference.at((step_s * k as f64) % LAP_S).position).collect()
         };
         let mut motors = vec![None; references.len()];
         if !self.nominal.springs.is_empty() {
-            let follower = Follower {
-                nominal: self.nominal,
-                z: self.z,
-                laws: self.names[..1].iter().chain(&self.others).map(|o| self.fitted(o)).collect(),
-                log: self.log,
-            };
-            motors = follower.motors(references, rows, options.duration_s)?;
+            let taken: Vec<Taken> =
+                self.names[..1].iter().map(taken).chain(self.others.iter().cloned()).collect();
+            let effects = Effects { candidates: self.candidates, taken: &taken };
+            let follower = Follower { nominal: self.nominal, z: self.z, effects, log: self.log };
+            motors = follower.motors(references, rows, LAP_S)?;
         }
         let joint = |(joint, reference): (usize, &Reference)| JointSignals {
             q: position(reference),
@@ -272,106 +225,75 @@ impl Ambiguity<'_> {
         Some(Signals::new(log, self.filters).unwrap_or_else(|_| self.log.clone()))
     }
 
-    fn fitted(&self, one: &Taken) -> Fitted<'_> {
-        let law = self.candidates[one.candidate].law.as_ref();
-        Fitted { law, values: one.values.clone() }
-    }
-
-    /// What names and the others do in a motion; none if nothing is measured there.
-    fn seen(&self, log: Signals) -> Option<Seen<'_>> {
-        let data = Data::new(self.nominal, vec![log]);
+    /// What is asked of names in a motion; none if nothing is measured there.
+    fn seen<T>(&self, log: Signals, asked: impl FnOnce(&mut Seen<'_, '_>) -> T) -> Option<T> {
+        let mut data = Data::new(self.nominal, vec![log]);
         if data.rows() == 0 {
             return None;
         }
-        let torques = data.model_torques(self.z);
-        let all = self.names.iter().chain(&self.others);
-        let laws: Vec<Fitted<'_>> = all.map(|one| self.fitted(one)).collect();
-        let unsure = turning(&data, &torques, &laws);
-        let mut deviation: Vec<f64> = unsure.iter().map(|row| row.deviation(1.0)).collect();
-        for stretch in &data.stretches {
-            let floor = self.floor.deviation[stretch.equation];
-            let rows = &mut deviation[stretch.first..stretch.first + stretch.rows];
-            rows.iter_mut().for_each(|row| *row = row.hypot(floor));
-        }
-        let names = laws[..self.names.len()].iter().map(|law| rows_of(&data, law, &torques));
-        let names = names.collect();
-        Some(Seen { data, torques, deviation, names })
-    }
-
-    /// The least separation of what was found from another name.
-    fn least(&self, seen: &Seen<'_>) -> f64 {
-        let problem = Problem::new(&seen.data, &seen.deviation, &[]);
-        let mut least = f64::INFINITY;
-        for rival in 1..self.names.len() {
-            for (truth, told) in [(0, rival), (rival, 0)] {
-                let blocks = self.left(seen, &problem, seen.names[truth].clone(), told);
-                least = least.min((blocks.iter().sum::<f64>() / ROWS_PER_SAMPLE).sqrt());
+        // What is measured there is what the model says: that tells the level of noise.
+        let torques = data.model_torques(self.z).swap_remove(0).total;
+        for stretch in data.stretches.clone() {
+            if stretch.equation == stretch.joint.0 {
+                let computed = data.signals[0].rows_of(&torques[stretch.equation]);
+                data.torque[stretch.range()].copy_from_slice(&computed);
             }
         }
-        least
+        let effects = Effects { candidates: self.candidates, taken: &[] };
+        let weighing = Weighing::new(vec![&data], effects, self.z);
+        let names = self.names.iter().map(|one| weighing.part(one)).collect();
+        let search = Search { weighing, screen: Vec::new(), log_choices: 0.0, most: 0 };
+        Some(asked(&mut Seen { search, data: &data, names, floor: self.floor }))
+    }
+}
+
+impl Seen<'_, '_> {
+    /// The least log odds of a name in a simulated log of it: of what was found against all others,
+    /// or of one of these against it.
+    fn odds(&mut self, truth: usize, random: &mut Random) -> f64 {
+        let mut log = self.noise(random);
+        add(&mut log, &self.names[truth].terms.known, 1.0);
+        self.search.weighing.base = self.search.weighing.base.clone().of(log);
+        let posterior =
+            |name: usize| self.search.settled(vec![self.names[name].clone()], None).posterior;
+        let others = if truth == 0 { 1..self.names.len() } else { 0..1 };
+        posterior(truth) - others.map(posterior).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Weighted squares of what a name leaves of rows, fitted with everything that may be off.
-    fn left(
-        &self,
-        seen: &Seen<'_>,
-        problem: &Problem<'_>,
-        rows: Vec<f64>,
-        name: usize,
-    ) -> Vec<f64> {
-        let Taken { candidate, values } = &self.names[name];
-        let law = self.candidates[*candidate].law.as_ref();
-        let mut fitted = [Fitted { law, values: values.clone() }];
-        // As a diagnosis does: what the model states of itself is not exceeded without end.
-        let found = within(&problem.of_rows(rows), &mut fitted, &seen.torques);
-        block_costs(&seen.data, &found.residual, &seen.deviation)
+    /// The least of these odds in one log of each name.
+    fn least(&mut self, seed: u64) -> f64 {
+        let odds = (0..self.names.len()).map(|truth| self.odds(truth, &mut Random::new(seed)));
+        odds.fold(f64::INFINITY, f64::min)
     }
 
     /// The share of simulated logs in which the right name is told: what was found from all others,
     /// and each of these from it.
-    fn power(&self, seen: &Seen<'_>, options: &ExperimentOptions) -> f64 {
-        let problem = Problem::new(&seen.data, &seen.deviation, &[]);
-        let mut random = Random::new(options.seed);
-        let (mut right, mut all) = (0, 0);
-        for truth in 0..self.names.len() {
-            let against = if truth == 0 { 1..self.names.len() } else { 0..1 };
-            for _ in 0..options.draws {
-                let mut rows = seen.names[truth].clone();
-                self.add_noise(seen, &mut random, &mut rows);
-                let own = self.left(seen, &problem, rows.clone(), truth);
-                let is_told = against.clone().all(|other| {
-                    let others = self.left(seen, &problem, rows.clone(), other);
-                    paired(&others, &own) > DISTINCT
-                });
-                right += usize::from(is_told);
-                all += 1;
-            }
-        }
-        right as f64 / all.max(1) as f64
+    fn power(&mut self, seed: u64) -> f64 {
+        let mut random = Random::new(seed);
+        let logs = DRAWS * self.names.len();
+        let told = (0..logs).filter(|log| self.odds(log / DRAWS, &mut random) > policy::NAMED);
+        told.count() as f64 / logs as f64
     }
 
     /// White noise as that of the logs, through the filter.
-    fn add_noise(&self, seen: &Seen<'_>, random: &mut Random, rows: &mut [f64]) {
-        let signals = &seen.data.signals[0];
+    fn noise(&self, random: &mut Random) -> Spectrum {
+        let signals = &self.data.signals[0];
         let gain = signals.noise_gain();
-        for stretch in &seen.data.stretches {
-            let deviation = self.floor.deviation[stretch.equation] / gain;
-            let noise = signals.white_rows(|| deviation * random.normal());
-            let rows = &mut rows[stretch.first..stretch.first + stretch.rows];
-            rows.iter_mut().zip(noise).for_each(|(row, noise)| *row += noise);
+        let mut rows = Vec::with_capacity(self.data.rows());
+        for stretch in &self.data.stretches {
+            let deviation = self.floor[stretch.equation] / gain;
+            rows.extend(signals.white_rows(|| deviation * random.normal()));
         }
+        self.search.weighing.spectra.of_rows(&[self.data], &[&rows], f64::INFINITY)
     }
 }
 
-/// What a law adds to the rows of data.
-fn rows_of(data: &Data<'_>, fitted: &Fitted<'_>, torques: &[ModelTorques]) -> Vec<f64> {
-    let mut rows = vec![0.0; data.rows()];
-    for (log, torques) in torques.iter().enumerate() {
-        let signals = &data.signals[log];
-        let motion = torques.motion(data.nominal, signals);
-        let response = fitted.law.response(motion, &fitted.values);
-        data.in_rows(LogIndex(log), signals, &response).subtract_from(&mut rows);
-    }
-    rows.iter_mut().for_each(|row| *row = -*row);
-    rows
+/// The separation that log odds are: of these, normal errors of so many deviations.
+fn separation_of(log_odds: f64) -> f64 {
+    (2.0 * log_odds.max(0.0)).sqrt()
+}
+
+/// A name with its values.
+fn taken(one: &Placed) -> Taken {
+    Taken { candidate: one.candidate, values: one.values.clone() }
 }

@@ -6,96 +6,63 @@ use super::signals::Signals;
 use crate::policy::floor::{LEAST, UNREPEATABLE};
 use denavit_measure::condition::{Butterworth, Laps};
 
-/// The floor of one log, after the filter of the rows.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NoiseFloor {
-    /// Deviation of each joint's torque, then of each spring's [N m, N]; of white noise above the
-    /// motion's frequencies and of steps of encoders, unless laps show more.
-    pub deviation: Vec<f64>,
-    /// From white noise alone.
-    pub white: Vec<f64>,
-    /// From the steps of the encoders, through the model, where joints do not turn around.
-    pub positions: Vec<f64>,
-    /// From laps, where the motion repeats.
-    pub laps: Option<Vec<f64>>,
-    /// The period of the laps \[s\].
-    pub period_s: Option<f64>,
+/// The floor of one log, after the filter of the rows: the deviation of each joint's torque, then
+/// of each spring's [N m, N]; of white noise above the motion's frequencies and of steps of
+/// encoders, unless laps show more.
+pub(super) type NoiseFloor = Vec<f64>;
+
+/// The floors of logs, with the torques of the nominal model.
+pub(super) fn floors(nominal: &Nominal<'_>, logs: &[Signals]) -> Vec<NoiseFloor> {
+    let phi = nominal.phi(&vec![0.0; nominal.len()]);
+    let of = |signals: &Signals| {
+        let computed = torques(nominal, signals, &phi);
+        let disturbed = torques(nominal, &signals.disturbed(), &phi);
+        let passed = nominal.springs.iter().zip(&phi.springs).map(|(spring, stiffness)| {
+            let [deflection, _] = signals.deflection(spring.joint)?;
+            let rows = signals.rows_of(&deflection);
+            Some(rows.iter().map(|deflection| stiffness * deflection).collect())
+        });
+        let torque = signals.torque.iter().cloned().chain(passed).collect::<Vec<_>>();
+        floor(signals, &torque, &computed, &disturbed)
+    };
+    logs.iter().map(of).collect()
 }
 
-impl NoiseFloor {
-    /// The floors of logs, with the torques of the nominal model.
-    pub fn of_logs(nominal: &Nominal<'_>, logs: &[Signals]) -> Vec<Self> {
-        let phi = nominal.phi(&vec![0.0; nominal.len()]);
-        let of = |signals: &Signals| {
-            let computed = torques(nominal, signals, &phi);
-            let disturbed = torques(nominal, &signals.disturbed(), &phi);
-            let passed = nominal.springs.iter().zip(&phi.springs).map(|(spring, stiffness)| {
-                let [deflection, _] = signals.deflection(spring.joint)?;
-                let rows = signals.rows_of(&deflection);
-                Some(rows.iter().map(|deflection| stiffness * deflection).collect())
-            });
-            let torque = signals.torque.iter().cloned().chain(passed).collect::<Vec<_>>();
-            Self::new(signals, &torque, &computed, &disturbed)
-        };
-        logs.iter().map(of).collect()
-    }
-
-    /// The floor of a log, given the torque of its rows, what the model makes of its motion, and of
-    /// the same with another error of its encoders: for each joint, then for each spring.
-    pub fn new(
-        signals: &Signals,
-        torque: &[Option<Vec<f64>>],
-        computed: &[Vec<f64>],
-        disturbed: &[Vec<f64>],
-    ) -> Self {
-        let gain = signals.noise_gain();
-        let mut white: Vec<f64> = signals
-            .measured
-            .iter()
-            .map(|torque| torque.as_ref().map_or(0.0, |torque| gain * white_noise(torque)))
-            .collect();
+/// The floor of a log, given the torque of its rows, what the model makes of its motion, and of the
+/// same with another error of its encoders: for each joint, then for each spring.
+fn floor(
+    signals: &Signals,
+    torque: &[Option<Vec<f64>>],
+    computed: &[Vec<f64>],
+    disturbed: &[Vec<f64>],
+) -> NoiseFloor {
+    let gain = signals.noise_gain();
+    let q: Vec<Vec<f64>> = signals.q.iter().map(|q| signals.cell_means(q)).collect();
+    let end = q.first().map_or(0, Vec::len);
+    let laps = Laps::find(&q, signals.log_step_s, 0..end).ok();
+    let of = |equation: usize| {
         // No torque is measured of springs.
-        white.resize(computed.len(), 0.0);
-        let both = computed.iter().zip(disturbed);
-        let positions: Vec<f64> = both
-            .map(|(a, b)| {
-                usual(signals.rows_of(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>()))
-            })
-            .collect();
-        let q: Vec<Vec<f64>> = signals.q.iter().map(|q| signals.cell_means(q)).collect();
-        let end = q.first().map_or(0, Vec::len);
-        let laps = Laps::find(&q, signals.log_step_s, 0..end).ok();
+        let measured = signals.measured.get(equation);
+        let white = measured.and_then(Option::as_ref).map_or(0.0, |own| gain * white_noise(own));
+        let (own, moved) = (&computed[equation], &disturbed[equation]);
+        let apart: Vec<f64> = own.iter().zip(moved).map(|(a, b)| a - b).collect();
+        let of_log = white.hypot(usual(signals.rows_of(&apart)));
         let of_laps = laps.map(|laps| {
-            let of = |(equation, computed): (usize, &Vec<f64>)| {
-                let computed = signals.cell_means(computed);
-                let left = match signals.measured.get(equation) {
-                    Some(None) => return 0.0,
-                    Some(Some(measured)) => {
-                        measured.iter().zip(computed).map(|(a, b)| a - b).collect()
-                    }
-                    None => computed,
-                };
-                lap_noise(&signals.filtered(left), laps)
+            let own = signals.cell_means(own);
+            let left = match measured {
+                Some(None) => return 0.0,
+                Some(Some(measured)) => measured.iter().zip(own).map(|(a, b)| a - b).collect(),
+                None => own,
             };
-            computed.iter().enumerate().map(of).collect::<Vec<f64>>()
+            lap_noise(&signals.filtered(left), laps)
         });
-        let deviation = (0..white.len()).map(|equation| {
-            let of_log = white[equation].hypot(positions[equation]);
-            // What differs much more from lap to lap than it shakes is not noise.
-            let laps = of_laps.as_ref().map(|laps| laps[equation]);
-            let laps = laps.filter(|laps| *laps < UNREPEATABLE * of_log);
-            let seen = laps.map_or(of_log, |laps| laps.max(of_log));
-            let rms = torque[equation].as_ref().map_or(0.0, |torque| rms(torque));
-            seen.max(LEAST * rms).max(f64::MIN_POSITIVE)
-        });
-        Self {
-            deviation: deviation.collect(),
-            white,
-            positions,
-            period_s: laps.map(|laps| laps.period * signals.log_step_s),
-            laps: of_laps,
-        }
-    }
+        // What differs much more from lap to lap than it shakes is not noise.
+        let of_laps = of_laps.filter(|laps| *laps < UNREPEATABLE * of_log);
+        let seen = of_laps.map_or(of_log, |laps| laps.max(of_log));
+        let rms = torque[equation].as_ref().map_or(0.0, |torque| rms(torque));
+        seen.max(LEAST * rms).max(f64::MIN_POSITIVE)
+    };
+    (0..computed.len()).map(of).collect()
 }
 
 /// Deviation of white noise in a signal, from what it has above a quarter of its rate; steps and

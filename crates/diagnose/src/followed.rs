@@ -4,9 +4,9 @@
 use super::data::ModelTorques;
 use super::law::derivative;
 use super::nominal::Nominal;
-use super::problem::Fitted;
 use super::rows::PerJoint;
 use super::signals::Signals;
+use super::state::{Effects, Taken};
 use crate::policy::followed::SETTLED;
 use denavit_measure::JointIndex;
 use denavit_plants::trajectory::Reference;
@@ -15,7 +15,7 @@ use denavit_plants::trajectory::Reference;
 pub(super) struct Follower<'a> {
     pub(super) nominal: &'a Nominal<'a>,
     pub(super) z: &'a [f64],
-    pub(super) laws: Vec<Fitted<'a>>,
+    pub(super) effects: Effects<'a>,
     /// A log, which says what is measured, and when.
     pub(super) log: &'a Signals,
 }
@@ -84,7 +84,8 @@ impl Follower<'_> {
         for _ in 0..MOST_ROUNDS {
             let torques = ModelTorques::new(nominal, &signals, self.z);
             let mut missed = torques.total[joints..].to_vec();
-            for Fitted { law, values } in &self.laws {
+            for Taken { candidate, values } in self.effects.taken {
+                let law = &self.effects.candidates[*candidate].law;
                 let response = law.response(torques.motion(nominal, &signals), values);
                 for (equation, torque) in response.equations.iter().zip(&response.torque) {
                     let Some(spring) = equation.checked_sub(joints) else { continue };

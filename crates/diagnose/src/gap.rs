@@ -14,21 +14,19 @@ pub struct Gap {
 
 impl Gap {
     /// The gap of what is left in the rows of data.
-    pub fn new(data: &Data<'_>, residual: &[f64]) -> Self {
+    pub(super) fn new(data: &Data<'_>, residual: &[f64]) -> Self {
         Self::of(data, |row, _| residual[row].powi(2))
     }
 
     /// The gap that noise alone leaves.
-    pub fn of_floor(data: &Data<'_>, floors: &[NoiseFloor]) -> Self {
-        Self::of(data, |_, stretch| floors[stretch.log.0].deviation[stretch.equation].powi(2))
+    pub(super) fn of_floor(data: &Data<'_>, floors: &[NoiseFloor]) -> Self {
+        Self::of(data, |_, stretch| floors[stretch.log.0][stretch.equation].powi(2))
     }
 
     fn of(data: &Data<'_>, left: impl Fn(usize, &Stretch) -> f64) -> Self {
         let of = |equation: usize| {
             let own = data.stretches.iter().filter(|stretch| stretch.equation == equation);
-            let rows = own.flat_map(|stretch| {
-                (stretch.first..stretch.first + stretch.rows).map(move |row| (row, stretch))
-            });
+            let rows = own.flat_map(|stretch| stretch.range().map(move |row| (row, stretch)));
             let (mut over, mut under) = (0.0, 0.0);
             for (row, stretch) in rows {
                 over += left(row, stretch);

@@ -1,5 +1,7 @@
 //! Effects together, weighed.
 
+use super::candidate::Candidate;
+use super::state::Taken;
 use super::weighing::Placed;
 use denavit_evidence::{Spectrum, Terms, Weighed};
 
@@ -71,6 +73,14 @@ impl Hypothesis {
         let Placed { values, deviations, .. } = &self.parts[place].placed;
         let moved = values.iter().zip(deviations).zip(self.factors()[place]);
         moved.map(|((value, deviation), factor)| value + deviation * factor).collect()
+    }
+
+    /// An effect with values of its parameters that it may have.
+    pub(super) fn taken(&self, place: usize, candidates: &[Candidate]) -> Taken {
+        let candidate = self.parts[place].placed.candidate;
+        let values = self.values(place).into_iter().zip(candidates[candidate].law.parameters());
+        let values = values.map(|(value, one)| value.clamp(one.bounds[0], one.bounds[1]));
+        Taken { candidate, values: values.collect() }
     }
 
     /// The standard deviations of an effect's parameters.

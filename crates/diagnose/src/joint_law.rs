@@ -1,21 +1,48 @@
 //! Effects of the catalogue as laws on the torques of a robot's joints.
 
 use super::floor::rms;
+use super::given::Belief;
 use super::law::{Law, Motion, Response};
+use super::reading_law::deflections;
 use crate::policy::joint_law::{ALL_GIVEN, OF_NOISE};
-use denavit_codegen::effect::SpringSide;
+use denavit_codegen::effect::{Channel, EffectSite, SpringSide};
 use denavit_evidence::Unpredicted;
 use denavit_measure::JointIndex;
 use denavit_plants::effect::{AddedTorques, EffectLaw, JointSamples, LawParameter, RobotEffect};
 
-/// An effect that adds to the torque of one joint, or of a pair, or changes the log of a torque.
+/// How a law of a joint meets what was measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Acts {
+    /// It adds to the torque of its joint, or of a pair, or changes the log of a torque.
+    Torque,
+    /// It is beside a series spring: what it passes on the spring need not.
+    Spring,
+    /// It makes a drive give another torque than is logged: what was demanded of it.
+    Demand,
+    /// It delays the torque that is logged.
+    Delay,
+    /// It is a transmission with play (`drive_law.rs`).
+    Play,
+    /// It is a transmission that is a spring and a damper (`elastic_law.rs`).
+    Elastic,
+    /// It stands between a position or velocity and its log (`reading_law.rs`).
+    Reading,
+    /// The same, of a joint that crosses a gap behind its drive: what it is behind is not in
+    /// proportion to its load.
+    Gap,
+}
+
+/// An effect on one joint, or on a pair.
 pub(super) struct JointLaw {
     /// The law.
     pub(super) law: EffectLaw,
     /// Its joint.
     pub(super) joint: JointIndex,
     /// The other joint, for laws of a pair.
-    pub(super) other: Option<JointIndex>,
+    other: Option<JointIndex>,
+    acts: Acts,
+    /// What the model says of its parameters.
+    pub(super) beliefs: Vec<Belief>,
 }
 
 /// The samples of a joint in a motion: of its drive, which may be before a spring.
@@ -45,19 +72,29 @@ pub(super) fn samples<'m>(
     samples
 }
 
-impl Law for JointLaw {
-    fn parameters(&self) -> &[LawParameter] {
-        &self.law.parameters
+impl JointLaw {
+    /// A law as it acts on the torques of a log.
+    pub(super) fn new(mut law: EffectLaw, joint: JointIndex, other: Option<JointIndex>) -> Self {
+        let acts = match law.channel() {
+            None if law.at == EffectSite::Spring => Acts::Spring,
+            Some(Channel::Torque) if law.has_play() => Acts::Play,
+            Some(Channel::Torque) if law.is_transmission() => Acts::Elastic,
+            Some(Channel::Torque) if law.is_inverse() => Acts::Demand,
+            Some(Channel::Torque) if law.is_delay() => Acts::Delay,
+            None | Some(Channel::Torque) => Acts::Torque,
+            Some(Channel::Position | Channel::Rate) if crosses_gap(&law) => Acts::Gap,
+            Some(Channel::Position | Channel::Rate) => Acts::Reading,
+        };
+        // How long a joint falls through a gap is not in proportion to the gap.
+        law.parameters.iter_mut().for_each(|one| one.linear &= acts != Acts::Gap);
+        Self { law, joint, other, acts, beliefs: Vec::new() }
     }
 
-    fn follows_accelerations(&self) -> bool {
-        self.law.follows_accelerations()
-    }
-
-    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+    /// What it adds to torques.
+    fn added(&self, motion: &Motion<'_>, values: &[f64]) -> Response {
         let mut response = Response::default();
         let mut add = |law: &EffectLaw, joint: JointIndex, other: Option<JointIndex>| {
-            let mut samples = samples(&motion, joint, other);
+            let mut samples = samples(motion, joint, other);
             let creep = motion.signals.creeping(joint);
             samples.creep = &creep;
             let mut equations = vec![joint.0];
@@ -89,63 +126,85 @@ impl Law for JointLaw {
         }
         response
     }
-}
 
-/// An effect beside a series spring: what it passes on the spring need not.
-pub(super) struct SpringLaw {
-    /// The law.
-    pub(super) law: EffectLaw,
-    /// The joint of the spring.
-    pub(super) joint: JointIndex,
-}
-
-impl Law for SpringLaw {
-    fn parameters(&self) -> &[LawParameter] {
-        &self.law.parameters
-    }
-
-    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+    /// What a spring need not pass on.
+    fn beside_spring(&self, motion: &Motion<'_>, values: &[f64]) -> Response {
         let Motion { model: (nominal, _), signals, .. } = motion;
         let both = nominal.spring_equation(self.joint).zip(signals.deflection(self.joint));
-        let Some((equation, [q, qd])) = both else {
-            return Response { gradient: vec![Vec::new(); values.len()], ..Response::default() };
-        };
+        let Some((equation, [q, qd])) = both else { return Response::default() };
         let samples = JointSamples { t: &signals.t, q: &q, qd: &qd, ..JointSamples::default() };
-        let less = |column: Vec<f64>| vec![column.iter().map(|torque| -torque).collect()];
-        Response {
-            equations: vec![equation],
-            torque: less(self.law.torque(&samples, values)),
-            gradient: self.law.gradient(&samples, values).into_iter().map(less).collect(),
-        }
+        let less = |column: Vec<f64>| column.iter().map(|torque| -torque).collect();
+        let gradient = self.law.gradient(&samples, values).into_iter().map(less);
+        Response::of(equation, less(self.law.torque(&samples, values)), gradient)
     }
-}
 
-/// An effect that makes a drive give another torque than is logged: what was demanded of it.
-///
-/// It changes what was measured and not what is computed, so that the law has no torque where
-/// nothing was measured. A clip of what was measured has what the model lacks in it only as far as
-/// that is beyond the clip, and what is left is then that of the model at the clip. Of what was
-/// demanded beyond a clip it says nothing.
-pub(super) struct DemandLaw {
-    /// The law.
-    pub(super) law: EffectLaw,
-    /// Its joint.
-    pub(super) joint: JointIndex,
-}
+    /// What was demanded more than was given.
+    ///
+    /// It changes what was measured and not what is computed, so that the law has no torque where
+    /// nothing was measured. A clip of what was measured has what the model lacks in it only as far
+    /// as that is beyond the clip, and what is left is then that of the model at the clip. Of what
+    /// was demanded beyond a clip it says nothing.
+    fn demanded(&self, motion: &Motion<'_>, values: &[f64]) -> Response {
+        let measured = self.measured(motion);
+        let samples = JointSamples { tau: &measured, ..samples(motion, self.joint, None) };
+        let mut torque = self.law.torque(&samples, values);
+        let mut gradient = self.law.gradient(&samples, values);
+        let lacks: Vec<f64> = torque.iter().copied().filter(|lack| *lack != 0.0).collect();
+        let noise = motion.signals.torque_noise[self.joint.0];
+        if rms(&lacks) < OF_NOISE * noise {
+            torque.fill(0.0);
+            gradient.iter_mut().for_each(|column| column.fill(0.0));
+        }
+        Response::of(self.joint.0, torque, gradient)
+    }
 
-impl DemandLaw {
     fn measured(&self, motion: &Motion<'_>) -> Vec<f64> {
         let measured = motion.signals.measured_within(self.joint);
         measured.unwrap_or_else(|| vec![0.0; motion.signals.samples()])
     }
+
+    /// What was measured, moved back to its time, and not what is computed: all that the model is
+    /// not sure of would have to be late as well.
+    fn undelayed(&self, motion: &Motion<'_>, values: &[f64]) -> Option<Response> {
+        let (delay_s, gradient) = self.law.delay(values)?;
+        let [added, rate] = motion.signals.undelayed_within(self.joint, delay_s)?;
+        let by = |slope: &f64| rate.iter().map(|rate| -slope * rate).collect();
+        Some(Response::of(self.joint.0, added, gradient.iter().map(by)))
+    }
 }
 
-impl Law for DemandLaw {
+/// Whether a law is of a gap behind a drive. A spring is taken to follow its load, slower than it
+/// swings.
+fn crosses_gap(law: &EffectLaw) -> bool {
+    law.is_read_at_drive() && {
+        let starts = law.parameters.iter().map(|one| one.start.first().copied().unwrap_or(1.0));
+        let under = deflections(law, &starts.collect::<Vec<f64>>(), &[1.0, 2.0]);
+        (under[1] - 2.0 * under[0]).abs() > f64::EPSILON * under[1].abs()
+    }
+}
+
+impl Law for JointLaw {
     fn parameters(&self) -> &[LawParameter] {
         &self.law.parameters
     }
 
+    fn beliefs(&self) -> &[Belief] {
+        &self.beliefs
+    }
+
+    fn follows_accelerations(&self) -> bool {
+        match self.acts {
+            Acts::Torque => self.law.follows_accelerations(),
+            Acts::Delay | Acts::Play | Acts::Reading => true,
+            // How a joint falls through its gap is integrated, and has no noise of accelerations.
+            Acts::Spring | Acts::Demand | Acts::Elastic | Acts::Gap => false,
+        }
+    }
+
     fn unpredicted(&self, motion: Motion<'_>, values: &[f64]) -> Unpredicted {
+        if self.acts != Acts::Demand {
+            return Unpredicted::default();
+        }
         let measured = self.measured(&motion);
         let samples = JointSamples { tau: &measured, ..samples(&motion, self.joint, None) };
         let torque = self.law.torque(&samples, values);
@@ -157,52 +216,22 @@ impl Law for DemandLaw {
     }
 
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
-        let measured = self.measured(&motion);
-        let samples = JointSamples { tau: &measured, ..samples(&motion, self.joint, None) };
-        let mut torque = self.law.torque(&samples, values);
-        let mut gradient = self.law.gradient(&samples, values);
-        let lacks: Vec<f64> = torque.iter().copied().filter(|lack| *lack != 0.0).collect();
-        let noise = motion.signals.torque_noise[self.joint.0];
-        if rms(&lacks) < OF_NOISE * noise {
-            torque.fill(0.0);
-            gradient.iter_mut().for_each(|column| column.fill(0.0));
+        let nothing = || {
+            let none = vec![0.0; motion.signals.samples()];
+            Response::of(self.joint.0, none.clone(), values.iter().map(|_| none.clone()))
+        };
+        match self.acts {
+            Acts::Torque => self.added(&motion, values),
+            Acts::Spring => self.beside_spring(&motion, values),
+            Acts::Demand => self.demanded(&motion, values),
+            Acts::Delay => {
+                self.undelayed(&motion, values).unwrap_or_else(|| self.added(&motion, values))
+            }
+            Acts::Play => self.through_play(&motion, values).unwrap_or_else(nothing),
+            Acts::Elastic => self.through_spring(&motion, values).unwrap_or_else(nothing),
+            Acts::Reading => self.read(&motion, values, false),
+            Acts::Gap => self.read(&motion, values, true),
         }
-        Response {
-            equations: vec![self.joint.0],
-            torque: vec![torque],
-            gradient: gradient.into_iter().map(|column| vec![column]).collect(),
-        }
-    }
-}
-
-/// A delay of the torque that is logged.
-///
-/// What was measured is moved back to its time, and not what is computed: all that the model is
-/// not sure of would have to be late as well.
-pub(super) struct DelayLaw {
-    /// The law.
-    pub(super) law: JointLaw,
-}
-
-impl Law for DelayLaw {
-    fn parameters(&self) -> &[LawParameter] {
-        self.law.parameters()
-    }
-
-    fn follows_accelerations(&self) -> bool {
-        true
-    }
-
-    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
-        let joint = self.law.joint;
-        let delay = self.law.law.delay(values);
-        let undone = delay.and_then(|(delay_s, gradient)| {
-            let [added, rate] = motion.signals.undelayed_within(joint, delay_s)?;
-            let by = |slope: &f64| vec![rate.iter().map(|rate| -slope * rate).collect()];
-            let gradient = gradient.iter().map(by).collect();
-            Some(Response { equations: vec![joint.0], torque: vec![added], gradient })
-        });
-        undone.unwrap_or_else(|| self.law.response(motion, values))
     }
 }
 

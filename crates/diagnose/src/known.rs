@@ -68,7 +68,7 @@ fn resting(signals: &Signals, joint: JointIndex, heights: &[f64]) -> Vec<f64> {
 }
 
 /// What is unknown in rows, or beside them, where the filter rings.
-pub(super) fn with_ringing(rows: &[f64]) -> Vec<f64> {
+fn with_ringing(rows: &[f64]) -> Vec<f64> {
     let of = |k: usize| {
         let near = &rows[k.saturating_sub(1)..(k + 2).min(rows.len())];
         near.iter().fold(rows[k].abs(), |most, row| most.max(RINGING * row.abs()))
@@ -98,7 +98,7 @@ fn heights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Filters, Uncertainty};
+    use crate::Filters;
     use denavit_codegen::regressor::functions::modelled;
     use denavit_measure::log::{JointSignals, MeasuredLog};
     use denavit_plants::regression::RegressionModel;
@@ -137,7 +137,7 @@ mod tests {
         let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
         let signals = Signals::new(waves(), Filters::of_torques(10.0)).expect("long enough");
         let logs = [signals];
-        let nominal = Nominal::new(&model, Uncertainty::default()).moving_as(&logs);
+        let nominal = Nominal::new(&model).moving_as(&logs);
         let ([signals], phi) = (&logs, nominal.phi(&vec![0.0; nominal.len()]));
 
         let [weights] = &weights(&nominal, signals, &phi)[..] else { panic!("one joint") };

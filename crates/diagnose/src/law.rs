@@ -45,6 +45,35 @@ pub struct Response {
     pub gradient: Vec<PerJoint>,
 }
 
+impl Response {
+    /// A torque in one equation, with its derivative by each parameter.
+    pub(super) fn of(
+        equation: usize,
+        torque: Vec<f64>,
+        gradient: impl IntoIterator<Item = Vec<f64>>,
+    ) -> Self {
+        let gradient = gradient.into_iter().map(|column| vec![column]).collect();
+        Self { equations: vec![equation], torque: vec![torque], gradient }
+    }
+}
+
+/// The derivatives of torques by each parameter, from differences.
+pub(super) fn differences(
+    torques: impl Fn(&[f64]) -> PerJoint,
+    at: &PerJoint,
+    values: &[f64],
+    step: impl Fn(usize) -> f64,
+) -> Vec<PerJoint> {
+    let by = |place: usize| {
+        let (mut moved, step) = (values.to_vec(), step(place));
+        moved[place] += step;
+        let slope = |(a, b): (&f64, &f64)| (a - b) / step;
+        let of = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(slope).collect();
+        torques(&moved).iter().zip(at).map(of).collect()
+    };
+    (0..values.len()).map(by).collect()
+}
+
 /// A law: torques as a function of motion and parameters.
 pub trait Law {
     /// Its parameters.

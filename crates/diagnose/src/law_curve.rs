@@ -1,10 +1,7 @@
 //! What an effect adds to measured torques, over the quantity that it depends on most: to be looked
 //! at, never to decide.
 
-use super::data::ModelTorques;
-use super::law::Law;
 use super::state::{Setting, State, Taken};
-use denavit_measure::LogIndex;
 
 /// What a law is drawn over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,8 +61,19 @@ impl LawCurve {
         let law = setting.candidates[taken.candidate].law.as_ref();
         let mut equations: Vec<Rows> =
             (0..data.nominal.equations()).map(|_| Rows::default()).collect();
-        for (log, torques) in state.torques.held_out.iter().enumerate() {
-            gather(setting, state, (log, torques), (law, &taken.values), &mut equations);
+        let response = data.response(law, &taken.values, &state.torques.held_out);
+        for (stretch, torque) in response.stretches.iter().zip(&response.torque) {
+            let signals = &data.signals[stretch.log.0];
+            let load = &state.torques.held_out[stretch.log.0].load;
+            let rows = &mut equations[stretch.equation];
+            let of = [&signals.qd, &signals.q, load, &signals.qdd];
+            let of = of.map(|all| &all[stretch.joint.0]).into_iter().chain([&signals.t]);
+            for (all, signal) in rows.quantities.iter_mut().zip(of) {
+                all.extend(signals.at_rows(signal));
+            }
+            let left = state.residual.held_out[stretch.range()].iter();
+            rows.measured.extend(left.zip(torque).map(|(left, torque)| left + torque));
+            rows.law.extend(torque);
         }
         let squares = |rows: &Rows| rows.law.iter().map(|torque| torque * torque).sum::<f64>();
         let all = equations.into_iter().enumerate();
@@ -92,32 +100,6 @@ impl LawCurve {
             law,
             measured,
         })
-    }
-}
-
-/// Adds the rows of a log to those of its equations.
-fn gather(
-    setting: &Setting<'_>,
-    state: &State,
-    (log, torques): (usize, &ModelTorques),
-    (law, values): (&dyn Law, &[f64]),
-    equations: &mut [Rows],
-) {
-    let data = setting.data.held_out;
-    let signals = &data.signals[log];
-    let response = law.response(torques.motion(data.nominal, signals), values);
-    let response = data.in_rows(LogIndex(log), signals, &response);
-    for (stretch, torque) in response.stretches.iter().zip(&response.torque) {
-        let joint = stretch.joint.0;
-        let rows = &mut equations[stretch.equation];
-        let of = [&signals.qd, &signals.q, &torques.load, &signals.qdd].map(|all| &all[joint]);
-        let of = [of[0], of[1], of[2], of[3], &signals.t];
-        for (all, signal) in rows.quantities.iter_mut().zip(of) {
-            all.extend(signals.at_rows(signal));
-        }
-        let left = &state.residual.held_out[stretch.first..stretch.first + stretch.rows];
-        rows.measured.extend(left.iter().zip(torque).map(|(left, torque)| left + torque));
-        rows.law.extend(torque);
     }
 }
 

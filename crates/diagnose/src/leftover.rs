@@ -3,7 +3,6 @@
 //! Noise of sensors and of drives is as strong in the bands in which a robot moves as in the ones
 //! above. What has more in the slow ones is a disturbance, or physics without a name.
 
-use super::data::Data;
 use super::hypothesis::Hypothesis;
 use super::spectra::Spectra;
 use denavit_evidence::policy;
@@ -26,7 +25,7 @@ pub(super) fn leftovers(spectra: &Spectra, hypothesis: &Hypothesis) -> Vec<Lefto
             filled.map(|rows| (rows.len() as f64, *variances.next().expect("a cell"))).collect();
         // the fastest band is where the filter already takes away
         let inner = &all[..all.len().saturating_sub(1)];
-        let fast = &inner[inner.len().min(inner.len() / 2)..];
+        let fast = &inner[inner.len() / 2..];
         let mut levels: Vec<f64> = fast.iter().map(|(_, variance)| *variance).collect();
         levels.sort_by(f64::total_cmp);
         let flat = policy::FLAT * levels.get(levels.len() / 2).copied().unwrap_or(0.0);
@@ -34,9 +33,4 @@ pub(super) fn leftovers(spectra: &Spectra, hypothesis: &Hypothesis) -> Vec<Lefto
         Leftover { equation, share: spectra.share_of_squares(equation, squares.sum()) }
     };
     spectra.layout.bands.iter().enumerate().map(of).collect()
-}
-
-/// Names of channels.
-pub(super) fn name(data: &Data<'_>, leftover: &Leftover) -> String {
-    data.nominal.equation_name(leftover.equation)
 }

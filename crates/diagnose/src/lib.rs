@@ -3,14 +3,12 @@
 //!
 //! - [`Signals`]: logs, filtered
 //! - [`Nominal`]: what the model says, and how sure it is
-//! - [`Data`]: both as rows
-//! - [`NoiseFloor`], [`Gap`]: how far they are apart, and how far they must be
+//! - [`Gap`]: how far they are apart, and how far they must be
 //! - [`Candidate`], [`Law`]: what may be missing
 //! - [`diagnose()`]: which effects are missing, by their evidence
 
 mod alias;
 mod between;
-mod blocks;
 mod candidate;
 mod catalogue;
 mod columns;
@@ -30,17 +28,14 @@ mod floor;
 mod followed;
 mod gap;
 mod given;
-mod held;
 mod hypothesis;
 mod joint_law;
 mod known;
 mod law;
 mod law_curve;
 mod leftover;
-mod logged;
 mod nominal;
 mod policy;
-mod problem;
 mod reading_law;
 mod regime;
 mod rounds;
@@ -59,28 +54,25 @@ mod weighing;
 mod worth;
 
 pub use alias::{ExactAliases, Named};
-pub use candidate::{Candidate, Start, starts};
+pub use candidate::Candidate;
 pub use catalogue::{candidates, spring_candidates};
-pub use curve::Curve;
-pub use data::{Data, ModelTorques, RowResponse, Stretch};
+pub use curve::{Curve, LoggedMotion};
 pub use diagnosis::{Diagnosis, Gaps, Progress, Request, diagnose};
 pub use effects_found::{Alternative, EffectValue, FoundEffect, GivenEffect};
-pub use elastic::{BeforeSprings, SeriesSpring, before_springs};
+pub use elastic::{BeforeSprings, Spring, before_springs};
 pub use error::{Error, ErrorKind};
 pub use excitation::Visible;
-pub use experiment::{Experiment, ExperimentOptions};
-pub use floor::{NoiseFloor, rms};
+pub use experiment::Experiment;
+pub use floor::rms;
 pub use gap::{Gap, share_closed};
 pub use given::{Belief, given_candidates};
 pub use law::{Law, Motion, Response};
 pub use law_curve::{LawCurve, Quantity};
 pub use leftover::Leftover;
-pub use logged::LoggedMotion;
-pub use nominal::{Nominal, Phi, Spring, Uncertain, Uncertainty};
-pub use problem::{Fitted, Problem};
-pub use regime::{Part, Regime, Where};
+pub use nominal::{Nominal, Phi};
+pub use regime::{Part, Where};
 pub use rows::PerJoint;
-pub use search::{SearchOptions, Step};
+pub use search::Step;
 pub use signals::{Filters, Signals};
 pub use simulated::{MotionGap, MotionGaps, Moved};
 pub use state::Taken;

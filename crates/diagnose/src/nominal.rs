@@ -5,42 +5,26 @@
 //! so that z has the prior N(0, 1) in all its entries.
 
 use super::data::SPRING_ZERO;
-use super::elastic::SeriesSpring;
+use super::elastic::Spring;
 use super::floor::rms;
 use super::signals::Signals;
 use super::turning::PER_JOINT;
+use crate::policy::nominal::{BODY, JOINT};
 use denavit_codegen::model::JointEntry;
 use denavit_measure::JointIndex;
 use denavit_plants::regression::{ModelParameter, RegressionModel, StandardParameter};
 
-/// How far numbers of a model may be off that say nothing of it, as a share of their value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Uncertainty {
-    /// Of bodies.
-    pub body: f64,
-    /// Of friction, rotors and offsets, which are known from measurements alone.
-    pub joint: f64,
-}
-
-impl Default for Uncertainty {
-    fn default() -> Self {
-        Self { body: 0.05, joint: 1.0 }
-    }
-}
-
 /// A number of the model that may be off.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Uncertain {
+pub(super) struct Uncertain {
     /// Its name in the model.
-    pub name: String,
+    pub(super) name: String,
     /// The value that the model gives.
-    pub value: f64,
+    pub(super) value: f64,
     /// Its standard deviation.
-    pub std: f64,
-    /// Whether the model states the deviation.
-    pub is_stated: bool,
+    pub(super) std: f64,
     /// Whether it cannot be negative.
-    pub is_positive: bool,
+    pub(super) is_positive: bool,
 }
 
 /// The nominal model: phi of its values and the directions in which they may be off.
@@ -49,7 +33,7 @@ pub struct Nominal<'a> {
     /// Base parameters and their columns.
     pub model: &'a RegressionModel,
     /// The numbers that may be off, one for each entry of z.
-    pub uncertain: Vec<Uncertain>,
+    pub(super) uncertain: Vec<Uncertain>,
     /// For each of them its place among the parameters of the regression.
     places: Vec<usize>,
     /// theta0 of the model's values.
@@ -61,28 +45,6 @@ pub struct Nominal<'a> {
     /// For each joint torque and rate (root of mean square) of the logs that it is asked about,
     /// which say how large errors of every model are: 0 where that is not known.
     pub(super) usual: Vec<[f64; 2]>,
-}
-
-/// The nominal model with its own numbers where they are.
-#[derive(Clone, Copy)]
-pub(super) struct NominalAt<'a> {
-    /// The model.
-    pub(super) nominal: &'a Nominal<'a>,
-    /// What its numbers are off, in their deviations.
-    pub(super) z: &'a [f64],
-}
-
-/// A spring between a motor and its joint, on the side of the joint.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Spring {
-    /// Its joint.
-    pub joint: JointIndex,
-    /// The name of its stiffness.
-    pub name: String,
-    /// Its stiffness [N m/rad, N/m].
-    pub stiffness: f64,
-    /// The standard deviation of that.
-    pub std: f64,
 }
 
 /// What the torques are linear in.
@@ -100,13 +62,13 @@ pub struct Phi {
 }
 
 impl<'a> Nominal<'a> {
-    /// The nominal model with the deviations that it states, others by `uncertainty`.
-    pub fn new(model: &'a RegressionModel, uncertainty: Uncertainty) -> Self {
+    /// The nominal model with the deviations that it states, or else usual ones.
+    pub fn new(model: &'a RegressionModel) -> Self {
         let values: Vec<f64> = model.parameters.iter().map(|one| one.value).collect();
         let theta = model.standard_values(&values);
         let (mut uncertain, mut places, mut directions) = (Vec::new(), Vec::new(), Vec::new());
         for (place, parameter) in model.parameters.iter().enumerate() {
-            let Some(std) = deviation(model, parameter, uncertainty) else { continue };
+            let Some(std) = deviation(model, parameter) else { continue };
             // theta0 is a polynomial of the numbers: products of mass and distances.
             let at = |sign: f64| {
                 let mut moved = values.clone();
@@ -120,7 +82,6 @@ impl<'a> Nominal<'a> {
                 name: parameter.name.clone(),
                 value: parameter.value,
                 std,
-                is_stated: parameter.std.is_some(),
                 is_positive: parameter.is_positive,
             });
         }
@@ -135,16 +96,9 @@ impl<'a> Nominal<'a> {
         }
     }
 
-    /// With springs whose balance is measured; deviations that are not stated as for joints.
-    pub fn with_springs(mut self, springs: &[SeriesSpring], uncertainty: Uncertainty) -> Self {
-        let of = |SeriesSpring { joint, stiffness }: &SeriesSpring| Spring {
-            joint: *joint,
-            name: stiffness.name.clone(),
-            stiffness: stiffness.value,
-            std: stiffness.std.unwrap_or(uncertainty.joint * stiffness.value),
-        };
-        self.springs = springs.iter().map(of).collect();
-        self
+    /// With springs whose balance is measured.
+    pub fn with_springs(self, springs: &[Spring]) -> Self {
+        Self { springs: springs.to_vec(), ..self }
     }
 
     /// Knowing the torques and rates of logs.
@@ -191,6 +145,12 @@ impl<'a> Nominal<'a> {
             true => joint.clone(),
             false => format!("spring of {joint}"),
         }
+    }
+
+    /// Why a motor that was measured does not say how its joint moves, in words.
+    pub(super) fn lacks_stiffness(&self, joint: JointIndex) -> String {
+        let joint = &self.model.joints[joint.0].name;
+        format!("the model has no stiffness of the spring behind the motor of `{joint}`")
     }
 
     /// The place in z of the first entry of a spring: of its stiffness; its zero follows.
@@ -246,7 +206,10 @@ impl<'a> Nominal<'a> {
     }
 
     fn phi_of(&self, theta: &[f64]) -> Phi {
-        let drives = self.only(theta, StandardParameter::is_of_joint);
+        let own = |(value, standard): (&f64, &StandardParameter)| {
+            if standard.is_of_joint() { *value } else { 0.0 }
+        };
+        let drives: Vec<f64> = theta.iter().zip(&self.model.standard).map(own).collect();
         let loads: Vec<f64> = theta.iter().zip(&drives).map(|(all, own)| all - own).collect();
         Phi {
             axes: self.model.axes_of_standard(theta),
@@ -256,23 +219,6 @@ impl<'a> Nominal<'a> {
         }
     }
 
-    /// theta0 with 0 for what is not asked for.
-    fn only(&self, theta: &[f64], is_asked: impl Fn(&StandardParameter) -> bool) -> Vec<f64> {
-        let of = |(value, standard): (&f64, &StandardParameter)| {
-            if is_asked(standard) { *value } else { 0.0 }
-        };
-        theta.iter().zip(&self.model.standard).map(of).collect()
-    }
-
-    /// phi of z without friction, offsets and rotors: what moves and carries the bodies, and what a
-    /// transmission passes on.
-    pub fn load_phi(&self, z: &[f64]) -> Phi {
-        let Phi { loads, mut drives, mut springs, .. } = self.phi(z);
-        drives.fill(0.0);
-        springs.fill(0.0);
-        Phi { axes: loads.clone(), drives, loads, springs }
-    }
-
     /// What a unit of each entry of z adds to phi.
     pub fn directions(&self) -> Vec<Phi> {
         self.directions.iter().map(|direction| self.phi_of(direction)).collect()
@@ -280,16 +226,12 @@ impl<'a> Nominal<'a> {
 }
 
 /// The deviation of a number; none where it is certain: stated as 0, or 0 without a statement.
-fn deviation(
-    model: &RegressionModel,
-    parameter: &ModelParameter,
-    uncertainty: Uncertainty,
-) -> Option<f64> {
+fn deviation(model: &RegressionModel, parameter: &ModelParameter) -> Option<f64> {
     let is_of_joint = model
         .standard
         .iter()
         .any(|standard| standard.name == parameter.name && standard.is_of_joint());
-    let share = if is_of_joint { uncertainty.joint } else { uncertainty.body };
+    let share = if is_of_joint { JOINT } else { BODY };
     let std = parameter.std.unwrap_or(share * parameter.value.abs());
     Some(std).filter(|std| *std > 0.0)
 }

@@ -7,13 +7,6 @@ pub(crate) mod columns {
     pub(crate) const AT_REST: f64 = 1e-6;
 }
 
-/// `blocks.rs`: Whether one model is better than another: paired by blocks of time, since what is
-/// left of torques is correlated from sample to sample.
-pub(crate) mod blocks {
-    /// Length of a block \[s\], and the least number of blocks of a log.
-    pub(crate) const BLOCK_S: f64 = 0.5;
-}
-
 /// `candidate.rs`: What may be missing: an effect of the catalogue in one place of the robot.
 pub(crate) mod candidate {
     /// Where a position that may be anywhere is looked for first, as shares of a joint's range.
@@ -70,16 +63,6 @@ pub(crate) mod excitation {
     pub(crate) const NEVER: f64 = 1e3;
 }
 
-/// `experiment.rs`: The separating experiment: a motion within the limits of the robot that tells
-/// names apart which the logs do not.
-pub(crate) mod experiment {
-    /// Standard errors from which on one name is worse than another.
-    pub(crate) const DISTINCT: f64 = 2.5;
-
-    /// Rows that count as one: what is left is correlated over the time of the filter.
-    pub(crate) const ROWS_PER_SAMPLE: f64 = 4.0;
-}
-
 /// `floor.rs`: The noise floor: what no model can explain, because it does not repeat.
 pub(crate) mod floor {
     /// Laps that differ by so many times their noise do not repeat.
@@ -94,13 +77,6 @@ pub(crate) mod floor {
 pub(crate) mod followed {
     /// What of the largest deflection may still change where laws beside a spring are settled.
     pub(crate) const SETTLED: f64 = 1e-6;
-}
-
-/// `given.rs`: Effects that the model has: they are not searched, but estimated again within what
-/// the model says of their parameters.
-pub(crate) mod given {
-    /// Deviations beyond which a parameter is not moved.
-    pub(crate) const MOST: f64 = 3.0;
 }
 
 /// `joint_law.rs`: Effects of the catalogue as laws on the torques of a robot's joints.
@@ -133,18 +109,14 @@ pub(crate) mod known {
     pub(crate) const RINGING: f64 = 0.3;
 }
 
-/// `problem.rs`: Weighted least squares with everything that the nominal model is not sure of
-/// eliminated.
-pub(crate) mod problem {
-    /// The least eigenvalue of scaled normal equations of a direction that is one.
-    pub(crate) const INDEPENDENT: f64 = 1e-7;
+/// `nominal.rs`: What the model says, and how sure it is of it.
+pub(crate) mod nominal {
+    /// How far numbers of bodies may be off where the model says nothing of that, as a share of
+    /// their value.
+    pub(crate) const BODY: f64 = 0.05;
 
-    /// The share of the cost that a step must gain for another to be taken, and the damping beyond
-    /// which no step gains anything.
-    pub(crate) const SETTLED: f64 = 1e-5;
-
-    /// See [`SETTLED`].
-    pub(crate) const STUCK: f64 = 1e4;
+    /// The same of friction, rotors, offsets and springs, which are known from measurements alone.
+    pub(crate) const JOINT: f64 = 1.0;
 }
 
 /// `signals.rs`: Logs as the diagnosis looks at them: motion at the full rate, torques through one
@@ -164,12 +136,6 @@ pub(crate) mod signals {
     pub(crate) const LEAST_RATE_HZ: f64 = 1000.0;
 }
 
-/// `simulated.rs`: The second gap: models in motion.
-pub(crate) mod simulated {
-    /// The longest motion of a log that is moved along \[s\].
-    pub(crate) const LONGEST_S: f64 = 60.0;
-}
-
 /// `standstill.rs`: Where a drive rests between two motions.
 pub(crate) mod standstill {
     /// Steps that a drive may creep by while it rests: its encoder turns between two readings, and
@@ -186,15 +152,8 @@ pub(crate) mod standstill {
     /// What is one step of readings, for rounding.
     pub(crate) const SAME: f64 = 1.01;
 
-    /// The deviation of what friction is at rest from what balances the torques by the model, over
-    /// that of sliding: another effect that is missing changes the balance.
-    pub(crate) const UNSURE: f64 = 0.4;
-
     /// The share of friction while it slides from which on a drive at rest may slide.
     pub(crate) const SLIDES: f64 = 0.9;
-
-    /// Samples of the log by which the ends of a rest are not known.
-    pub(crate) const EDGE: f64 = 2.0;
 
     /// The power of time with which a drive leaves: 3 if its inertia is all that matters, 2 if
     /// what opposes its rate is, or if friction falls when it leaves.
@@ -208,7 +167,7 @@ pub(crate) mod standstill {
 /// judged with others.
 pub(crate) mod state {
     /// Entries of z that are further from 0 say that the model's own numbers are off by more than
-    /// it states; experiments do not move them beyond.
+    /// it states. Experiments, and parameters of effects that the model has, do not go beyond.
     pub(crate) const MOST_Z: f64 = 3.0;
 }
 
@@ -217,17 +176,6 @@ pub(crate) mod state {
 pub(crate) mod structure {
     /// The least share of squares of held-out logs that a term must explain.
     pub(crate) const LEAST_SHARE: f64 = 0.05;
-}
-
-/// `turning.rs`: What nobody can know of friction while a joint turns around, and what every model
-/// has.
-pub(crate) mod turning {
-    /// The time by which the filter of positions moves a corner of a rate, times the cutoff of
-    /// torques.
-    pub(crate) const CORNER: f64 = 0.05;
-
-    /// The deviation of what is anywhere between two values, over their distance.
-    pub(crate) const BETWEEN: f64 = 0.288_675_134_594_812_9;
 }
 
 /// `verdict.rs`: The answer in one word, and why.

@@ -12,47 +12,36 @@
 //! with M the inertia of the bodies about the joint. Steps in time are implicit, which damps what
 //! swings faster than they are.
 
-use super::joint_law::samples;
-use super::law::{Law, Motion, Response};
+use super::joint_law::{JointLaw, samples};
+use super::law::{Motion, Response, differences};
 use super::rows::PerJoint;
 use super::signals::Signals;
 use crate::policy::joint_law::DIFFERENCE;
 use crate::policy::reading_law::REACH;
 use denavit_codegen::effect::Channel;
-use denavit_measure::JointIndex;
-use denavit_plants::effect::{EffectLaw, JointSamples, LawParameter};
+use denavit_plants::effect::{EffectLaw, JointSamples};
 
-/// An effect that stands between a position or velocity and its log: the model was given what is
-/// logged, and gives other torques for what is true.
-pub(super) struct ReadingLaw {
-    /// The law.
-    law: EffectLaw,
-    /// Its joint.
-    joint: JointIndex,
-    /// Whether the joint crosses a gap behind its drive: what it is behind is not in proportion to
-    /// its load. A spring is taken to follow its load, slower than it swings.
-    has_gap: bool,
-}
-
-impl ReadingLaw {
-    /// The law of a joint.
-    pub(super) fn new(mut law: EffectLaw, joint: JointIndex) -> Self {
-        let has_gap = law.is_read_at_drive() && {
-            let starts = law.parameters.iter().map(|one| one.start.first().copied().unwrap_or(1.0));
-            let under = deflections(&law, &starts.collect::<Vec<f64>>(), &[1.0, 2.0]);
-            (under[1] - 2.0 * under[0]).abs() > f64::EPSILON * under[1].abs()
+impl JointLaw {
+    /// What is between a position or velocity and its log: the model was given what is logged, and
+    /// gives other torques for what is true.
+    pub(super) fn read(&self, motion: &Motion<'_>, values: &[f64], has_gap: bool) -> Response {
+        let of = |values: &[f64]| self.of_truth(motion, values, has_gap);
+        let step = |place: usize| {
+            let sizes = self.law.parameters[place].start.iter().map(|start| start.abs());
+            let size = sizes.fold(values[place].abs(), f64::max);
+            DIFFERENCE * if size > 0.0 { size } else { 1.0 }
         };
-        // How long a joint falls through a gap is not in proportion to the gap.
-        law.parameters.iter_mut().for_each(|one| one.linear &= !has_gap);
-        Self { law, joint, has_gap }
+        let torque = of(values);
+        let gradient = differences(of, &torque, values, step);
+        Response { equations: (0..torque.len()).collect(), torque, gradient }
     }
 
     /// What the torques of the true motion have more than those of the logged one.
-    fn torques(&self, motion: &Motion<'_>, values: &[f64]) -> PerJoint {
+    fn of_truth(&self, motion: &Motion<'_>, values: &[f64], has_gap: bool) -> PerJoint {
         let (joint, logged) = (self.joint, motion.signals);
         let mut signals: Signals = logged.clone();
         let is_drive = self.law.is_read_at_drive() && logged.motor[joint.0].is_none();
-        let truth: Vec<f64> = if is_drive && self.has_gap {
+        let truth: Vec<f64> = if is_drive && has_gap {
             let deflection = self.deflection(motion, values);
             logged.q[joint.0].iter().zip(deflection).map(|(read, by)| read - by).collect()
         } else {
@@ -72,9 +61,7 @@ impl ReadingLaw {
         }
         torques
     }
-}
 
-impl ReadingLaw {
     /// How far the joint is behind its drive at each sample [rad, m].
     fn deflection(&self, motion: &Motion<'_>, values: &[f64]) -> Vec<f64> {
         let (joint, signals) = (self.joint, motion.signals);
@@ -99,7 +86,7 @@ impl ReadingLaw {
 }
 
 /// How far a transmission gives way under loads that rest.
-fn deflections(law: &EffectLaw, values: &[f64], loads: &[f64]) -> Vec<f64> {
+pub(super) fn deflections(law: &EffectLaw, values: &[f64], loads: &[f64]) -> Vec<f64> {
     let zeros = vec![0.0; loads.len()];
     let [t, q, qd, qdd, tau] = [zeros.as_slice(); 5];
     law.logged(&JointSamples { t, q, qd, qdd, tau, tau_load: loads, ..Default::default() }, values)
@@ -146,37 +133,6 @@ impl Bends {
         let [below, above] = [beyond(low), beyond(high)];
         let share = if above > below { (-below / (above - below)).clamp(0.0, 1.0) } else { 0.5 };
         self.deflections[low] + share * (self.deflections[high] - self.deflections[low])
-    }
-}
-
-impl Law for ReadingLaw {
-    fn parameters(&self) -> &[LawParameter] {
-        &self.law.parameters
-    }
-
-    /// How a joint falls through its gap is integrated, and has no noise of accelerations.
-    fn follows_accelerations(&self) -> bool {
-        !self.has_gap
-    }
-
-    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
-        let torque = self.torques(&motion, values);
-        let by = |place: usize| -> PerJoint {
-            let sizes = self.law.parameters[place].start.iter().map(|start| start.abs());
-            let size = sizes.fold(values[place].abs(), f64::max);
-            let step = DIFFERENCE * if size > 0.0 { size } else { 1.0 };
-            let mut moved = values.to_vec();
-            moved[place] += step;
-            let slope = |(a, b): (&f64, &f64)| (a - b) / step;
-            let of_joint =
-                |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(slope).collect::<Vec<f64>>();
-            self.torques(&motion, &moved).iter().zip(&torque).map(of_joint).collect()
-        };
-        Response {
-            equations: (0..torque.len()).collect(),
-            gradient: (0..values.len()).map(by).collect(),
-            torque,
-        }
     }
 }
 

@@ -3,61 +3,12 @@
 use super::data::{Data, ModelTorques, Stretch};
 use super::floor::NoiseFloor;
 use crate::policy::regime::{AT_EXTREME, AT_REST, MUCH, SLOW, TOLD};
-use std::fmt;
-
-/// A state of motion of a joint.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Regime {
-    /// It moves towards larger positions.
-    Forward,
-    /// It moves towards smaller positions.
-    Backward,
-    /// Within this time of a reversal \[s\].
-    NearReversal(f64),
-    /// Slower than a tenth of its highest speed.
-    Slow,
-    /// Faster than three fifths of it.
-    Fast,
-    /// At more than three fifths of its largest acceleration.
-    Accelerating,
-    /// At more than three fifths of the largest torque of its rigid bodies.
-    Loaded,
-    /// In the highest sixth of its positions.
-    UpperEnd,
-    /// In the lowest sixth of its positions.
-    LowerEnd,
-    /// In the first third of the log.
-    Early,
-    /// In the last third of the log.
-    Late,
-    /// Its torque rests at an extreme.
-    Saturated,
-}
-
-impl fmt::Display for Regime {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Forward => write!(f, "moving forward"),
-            Self::Backward => write!(f, "moving backward"),
-            Self::NearReversal(within) => write!(f, "within {:.0} ms of reversals", 1e3 * within),
-            Self::Slow => write!(f, "below a tenth of its highest speed"),
-            Self::Fast => write!(f, "above three fifths of its highest speed"),
-            Self::Accelerating => write!(f, "above three fifths of its largest acceleration"),
-            Self::Loaded => write!(f, "above three fifths of its largest load"),
-            Self::UpperEnd => write!(f, "in the highest sixth of its positions"),
-            Self::LowerEnd => write!(f, "in the lowest sixth of its positions"),
-            Self::Early => write!(f, "in the first third of the log"),
-            Self::Late => write!(f, "in the last third of the log"),
-            Self::Saturated => write!(f, "while its torque rests at an extreme"),
-        }
-    }
-}
 
 /// A regime's part of what a joint leaves unexplained.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// The regime.
-    pub regime: Regime,
+    /// The state of motion, in words.
+    pub regime: String,
     /// Its share of the squares that are left of the joint.
     pub share: f64,
     /// Its share of the time.
@@ -122,24 +73,25 @@ pub(super) fn where_left(
         if own.is_empty() {
             continue;
         }
-        let all = |stretch: &Stretch| stretch.first..stretch.first + stretch.rows;
+        let all = |stretch: &Stretch| stretch.range();
         let squares = |values: &[f64]| -> f64 {
             own.iter().flat_map(|s| &values[all(s)]).map(|value| value * value).sum()
         };
         let (left, torque) = (squares(residual), squares(&data.torque));
         let noise: f64 =
-            own.iter().map(|s| s.rows as f64 * floors[s.log.0].deviation[equation].powi(2)).sum();
-        let mut sums: Vec<(Regime, f64, usize)> = Vec::new();
+            own.iter().map(|s| s.rows as f64 * floors[s.log.0][equation].powi(2)).sum();
+        let mut sums: Vec<(String, f64, usize)> = Vec::new();
         for stretch in &own {
             let flags = regimes(data, &torques[stretch.log.0], stretch, filter_s);
-            for (regime, is_in) in flags {
-                let part = is_in.iter().zip(&residual[all(stretch)]).filter(|(is_in, _)| **is_in);
-                let (square, count) =
-                    part.fold((0.0, 0), |(s, n), (_, value)| (s + value * value, n + 1));
-                match sums.iter_mut().find(|(known, ..)| *known == regime) {
-                    Some((_, sum, number)) => (*sum, *number) = (*sum + square, *number + count),
-                    None => sums.push((regime, square, count)),
+            for (place, (regime, is_in)) in flags.into_iter().enumerate() {
+                if place == sums.len() {
+                    sums.push((regime, 0.0, 0));
                 }
+                let (_, sum, count) = &mut sums[place];
+                let part = is_in.iter().zip(&residual[stretch.range()]);
+                let part = part.filter(|(is_in, _)| **is_in);
+                let square: f64 = part.clone().map(|(_, value)| value * value).sum();
+                (*sum, *count) = (*sum + square, *count + part.count());
             }
         }
         let rows: usize = own.iter().map(|stretch| stretch.rows).sum();
@@ -169,18 +121,18 @@ pub(super) fn where_left(
     found
 }
 
-/// For each regime whether the rows of a stretch are in it.
+/// For each state of motion whether the rows of a stretch are in it.
 fn regimes(
     data: &Data<'_>,
     torques: &ModelTorques,
     stretch: &Stretch,
     filter_s: f64,
-) -> Vec<(Regime, Vec<bool>)> {
+) -> Vec<(String, Vec<bool>)> {
     let (signals, joint) = (&data.signals[stretch.log.0], stretch.joint);
     let [q, qd, qdd] =
         [&signals.q, &signals.qd, &signals.qdd].map(|all| signals.at_rows(&all[joint.0]));
     let load = signals.at_rows(&torques.load[joint.0]);
-    let torque = &data.torque[stretch.first..stretch.first + stretch.rows];
+    let torque = &data.torque[stretch.range()];
     let most = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     let (low, high) = q.iter().fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
     let sixth = (high - low) / 6.0;
@@ -200,36 +152,33 @@ fn regimes(
         torque[k].abs() > AT_EXTREME * extreme
             && beside.iter().all(|&at| (torque[at] - torque[k]).abs() < AT_REST * extreme)
     };
-    let of = |is_in: &dyn Fn(usize) -> bool| (0..count).map(is_in).collect::<Vec<bool>>();
-    vec![
-        (Regime::Forward, of(&|k| qd[k] > 0.0)),
-        (Regime::Backward, of(&|k| qd[k] < 0.0)),
-        (Regime::NearReversal(within_s), of(&near)),
-        (Regime::Slow, of(&|k| qd[k].abs() < SLOW * fastest)),
-        (Regime::Fast, of(&|k| qd[k].abs() > MUCH * fastest)),
-        (Regime::Accelerating, of(&|k| qdd[k].abs() > MUCH * hardest)),
-        (Regime::Loaded, of(&|k| load[k].abs() > MUCH * heaviest)),
-        (Regime::UpperEnd, of(&|k| q[k] > high - sixth)),
-        (Regime::LowerEnd, of(&|k| q[k] < low + sixth)),
-        (Regime::Early, of(&|k| 3 * k < count)),
-        (Regime::Late, of(&|k| 3 * k >= 2 * count)),
-        (Regime::Saturated, of(&rests)),
-    ]
+    let near_words = format!("within {:.0} ms of reversals", 1e3 * within_s);
+    let all: [(&str, &dyn Fn(usize) -> bool); 12] = [
+        ("moving forward", &|k| qd[k] > 0.0),
+        ("moving backward", &|k| qd[k] < 0.0),
+        (&near_words, &near),
+        ("below a tenth of its highest speed", &|k| qd[k].abs() < SLOW * fastest),
+        ("above three fifths of its highest speed", &|k| qd[k].abs() > MUCH * fastest),
+        ("above three fifths of its largest acceleration", &|k| qdd[k].abs() > MUCH * hardest),
+        ("above three fifths of its largest load", &|k| load[k].abs() > MUCH * heaviest),
+        ("in the highest sixth of its positions", &|k| q[k] > high - sixth),
+        ("in the lowest sixth of its positions", &|k| q[k] < low + sixth),
+        ("in the first third of the log", &|k| 3 * k < count),
+        ("in the last third of the log", &|k| 3 * k >= 2 * count),
+        ("while its torque rests at an extreme", &rests),
+    ];
+    all.map(|(words, is_in)| (words.to_owned(), (0..count).map(is_in).collect())).into()
 }
 
 /// The second in which most is left.
 fn window(data: &Data<'_>, residual: &[f64], own: &[Stretch]) -> ([f64; 2], f64) {
-    let whole: f64 = own
-        .iter()
-        .flat_map(|s| &residual[s.first..s.first + s.rows])
-        .map(|value| value * value)
-        .sum();
+    let whole: f64 = own.iter().flat_map(|s| &residual[s.range()]).map(|value| value * value).sum();
     let mut best = ([0.0; 2], 0.0);
     for stretch in own {
         let signals = &data.signals[stretch.log.0];
         let times = signals.at_rows(&signals.t);
         let length = ((1.0 / signals.row_step_s()) as usize).clamp(1, stretch.rows);
-        let part = &residual[stretch.first..stretch.first + stretch.rows];
+        let part = &residual[stretch.range()];
         let mut sum: f64 = part[..length].iter().map(|value| value * value).sum();
         for end in length..=part.len() {
             let share = sum / whole.max(f64::MIN_POSITIVE);

@@ -1,6 +1,5 @@
 //! The rounds of a search: effects are added until the evidence asks for no more.
 
-use super::candidate::Candidate;
 use super::hypothesis::{Hypothesis, Part};
 use super::search::{Search, Step};
 use super::state::Effects;
@@ -51,7 +50,7 @@ impl Search<'_> {
         let mut seen = vec![now.names()];
         let (is_full, is_stopped) = loop {
             let is_stopped = !watch(&now.candidates());
-            let room = self.options.most_effects.saturating_sub(now.parts.len());
+            let room = self.most.saturating_sub(now.parts.len());
             let next = (room > 0 && !is_stopped).then(|| self.next(&now, room, &mut steps));
             if let Some(next) = next.flatten() {
                 // Effects of other joints hardly notice: they are looked at in the end.
@@ -99,40 +98,16 @@ impl Search<'_> {
         Some(self.settled(chosen.parts.clone(), Some(&chosen)))
     }
 
-    /// What was found without the effect in one place, which is no candidate any more. Others of
-    /// its joint are exchanged, and none is added: what did not repeat is like many an effect.
-    /// Effects of other joints hardly notice.
+    /// What was found without the effect in one place, which is no candidate any more. Others are
+    /// exchanged, and none is added: what did not repeat is like many an effect.
     pub(super) fn drop(&mut self, found: &mut Found, place: usize) {
         let mut parts = found.after.parts.clone();
         let dropped = parts.remove(place).placed.candidate;
-        let joint = self.weighing.candidates[dropped].joint;
-        let is_near = |one: &Candidate| joint.is_none() || one.joint == joint;
         self.screen[dropped].clear();
         let rest = self.settled(parts, Some(&found.after));
-        let (after, mut rivals) = self.exchanged(rest, &is_near, &mut BTreeSet::new());
-        for (place, rivals) in rivals.iter_mut().enumerate() {
-            if !is_near(self.candidate(&after, place)) {
-                *rivals = self.rivals_beside(&after, place, found);
-            }
-        }
+        let (after, rivals) = self.exchanged(rest, &|_| true, &mut BTreeSet::new());
         found.dropped.push(dropped);
         (found.after, found.rivals) = (after, rivals);
-    }
-
-    /// What else would do in a place by an earlier search, beside what is there now.
-    fn rivals_beside(&self, now: &Hypothesis, place: usize, before: &Found) -> Vec<Hypothesis> {
-        let own = now.parts[place].placed.candidate;
-        let Some(old) = before.after.candidates().iter().position(|&one| one == own) else {
-            return Vec::new();
-        };
-        let is_near = |one: &&Hypothesis| one.posterior > before.after.posterior - policy::RIVAL;
-        let rivals = before.rivals.get(old).into_iter().flatten().filter(is_near);
-        let beside = |one: &Hypothesis| {
-            let mut parts = now.parts.clone();
-            parts[place] = one.parts[old].clone();
-            self.weighed(parts, Some(now), policy::ROUNDS[1])
-        };
-        rivals.map(beside).collect()
     }
 
     /// The model's own numbers by what was found, if the logs are more likely where laws are

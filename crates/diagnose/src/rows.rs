@@ -136,7 +136,12 @@ pub(super) fn behind_springs(
 }
 
 /// The torque of every joint by phi on the joint axes, and by what is known if that is asked for.
-fn of_axes(nominal: &Nominal<'_>, signals: &Signals, phi: &[f64], with_known: bool) -> PerJoint {
+pub(super) fn of_axes(
+    nominal: &Nominal<'_>,
+    signals: &Signals,
+    phi: &[f64],
+    with_known: bool,
+) -> PerJoint {
     let joints = nominal.model.joints.len();
     let of_joint: Vec<Vec<f64>> = nominal
         .model

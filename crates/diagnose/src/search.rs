@@ -8,26 +8,6 @@ use denavit_codegen::effect::Occurrence;
 use denavit_evidence::{Glance, Terms, policy};
 use std::cmp::Ordering;
 
-/// What a search is allowed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SearchOptions {
-    /// Most effects that are added.
-    pub most_effects: usize,
-}
-
-impl Default for SearchOptions {
-    fn default() -> Self {
-        Self { most_effects: 6 }
-    }
-}
-
-impl SearchOptions {
-    /// No effect is looked for.
-    pub(super) fn none() -> Self {
-        Self { most_effects: 0 }
-    }
-}
-
 /// One step of a search, for a report.
 #[derive(Clone, Debug)]
 pub struct Step {
@@ -50,7 +30,8 @@ pub(super) struct Search<'a> {
     pub(super) screen: Vec<Vec<Part>>,
     /// The log of what all candidates are expected to weigh together.
     pub(super) log_choices: f64,
-    pub(super) options: SearchOptions,
+    /// Most effects that are added.
+    pub(super) most: usize,
 }
 
 /// The log odds of an effect before any log is looked at.
@@ -68,7 +49,7 @@ impl<'a> Search<'a> {
     pub(super) fn new(
         weighing: Weighing<'a>,
         given: usize,
-        options: SearchOptions,
+        most: usize,
         watch: &mut dyn FnMut(f64) -> bool,
     ) -> Self {
         let candidates = weighing.candidates;
@@ -84,7 +65,7 @@ impl<'a> Search<'a> {
         }
         let weights = candidates.iter().skip(given).map(|one| log_occurrence(one).exp());
         let log_choices = weights.sum::<f64>().max(1.0).ln();
-        Self { weighing, screen, log_choices, options }
+        Self { weighing, screen, log_choices, most }
     }
 
     /// The step to the best of some hypotheses.
@@ -109,7 +90,7 @@ impl<'a> Search<'a> {
     /// The best of hypotheses of one more effect that is worth it, by its plainest name.
     pub(super) fn chosen(&self, now: &Hypothesis, all: Vec<Hypothesis>) -> Option<Hypothesis> {
         let best = all.iter().find(|one| self.is_worth(now, one, one.parts.len() - 1))?;
-        Some(self.plainest(best, best.parts.len() - 1, &all).clone())
+        Some(self.plainest(best, best.parts.len() - 1, all.iter()).clone())
     }
 
     /// Of hypotheses that have another effect in one place: the best of those that are plainer than
@@ -118,9 +99,9 @@ impl<'a> Search<'a> {
         &self,
         best: &'h Hypothesis,
         place: usize,
-        all: &'h [Hypothesis],
+        all: impl Iterator<Item = &'h Hypothesis>,
     ) -> &'h Hypothesis {
-        let plain = all.iter().filter(|one| self.is_plainer(one, best, place));
+        let plain = all.filter(|one| self.is_plainer(one, best, place));
         plain.max_by(|a, b| a.posterior.total_cmp(&b.posterior)).unwrap_or(best)
     }
 
@@ -322,30 +303,5 @@ impl<'a> Search<'a> {
         let of_parts: f64 = parts.iter().map(prior).sum();
         let more = policy::ONE_MORE * parts.len().saturating_sub(1) as f64;
         Hypothesis { posterior: weighed.log_evidence + of_parts + more, parts, weighed }
-    }
-
-    /// Errors from which on an effect of one parameter has the odds that a name asks for.
-    pub(super) fn least_errors(&self) -> f64 {
-        (2.0 * (policy::NAMED + self.log_choices)).sqrt()
-    }
-
-    /// What is seen of every candidate of one parameter beside what was found: its number, how far
-    /// its value may be off, and what that is of its joint's torque.
-    pub(super) fn precisions(&self, after: &Hypothesis) -> Vec<(usize, f64, f64)> {
-        let glance = self.glance(after, &after.parts);
-        let there = after.candidates();
-        let mut all = Vec::new();
-        for (candidate, own) in self.screen.iter().enumerate() {
-            let one = &self.weighing.candidates[candidate];
-            let (Some(part), Some(joint)) = (own.first(), one.joint) else { continue };
-            if part.terms.len() != 1 || there.contains(&candidate) {
-                continue;
-            }
-            let precision = glance.see(&part.terms).precision[0];
-            let share = self.weighing.spectra.share(&part.terms.columns[0], joint.0);
-            let error = precision.sqrt().recip();
-            all.push((candidate, error * part.placed.deviations[0], error * share));
-        }
-        all
     }
 }

@@ -28,13 +28,6 @@ pub struct Filters {
 }
 
 impl Filters {
-    /// The filters of logs of a step whose positions may vary up to a share of the rate of
-    /// sampling. Torques have half of it, which keeps what the filter of positions takes away out
-    /// of the comparison.
-    pub fn new(step_s: f64, share: f64) -> Self {
-        Self { motion_hz: share / step_s, torque_hz: 0.5 * share / step_s }
-    }
-
     /// The filters for a cutoff of torques: positions have three times that.
     pub fn of_torques(torque_hz: f64) -> Self {
         Self { motion_hz: 3.0 * torque_hz, torque_hz }
@@ -435,7 +428,8 @@ mod tests {
         let joint = JointSignals { tau: Some(late.collect()), q, ..JointSignals::default() };
         let (file, joints) = ("made".to_owned(), vec![joint]);
         let log = MeasuredLog { file, step_s, joints, ..MeasuredLog::default() };
-        let signals = Signals::new(log, Filters::new(step_s, 0.05)).expect("long enough");
+        let signals =
+            Signals::new(log, Filters { motion_hz: 25.0, torque_hz: 12.5 }).expect("long enough");
         let [added, slope] = signals.undelayed_within(JointIndex(0), delay_s).expect("measured");
         let [q, added, slope] = [&signals.q[0], &added, &slope].map(|all| signals.at_rows(all));
         let t = signals.at_rows(&signals.t);
@@ -456,7 +450,8 @@ mod tests {
         let joint = JointSignals { tau: Some(q.clone()), q, ..JointSignals::default() };
         let (file, joints) = ("made".to_owned(), vec![joint]);
         let log = MeasuredLog { file, step_s, joints, ..MeasuredLog::default() };
-        let signals = Signals::new(log, Filters::new(step_s, 0.05)).expect("long enough");
+        let signals =
+            Signals::new(log, Filters { motion_hz: 25.0, torque_hz: 12.5 }).expect("long enough");
         let measured = signals.torque[0].as_ref().expect("measured");
         let rows = signals.rows_of(&signals.q[0]);
         assert_eq!(rows.len(), measured.len());

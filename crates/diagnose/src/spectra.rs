@@ -9,6 +9,7 @@ use super::floor::rms;
 use denavit_evidence::{Layout, Spectrum, policy};
 use nalgebra::DVector;
 use rustdct::{DctPlanner, TransformType2And3};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// One line of a spectrum: a stretch of a set of logs, and the number of the line.
@@ -98,24 +99,14 @@ impl Spectra {
     /// The spectrum of what stretches have, if they have anything.
     fn of<'r>(&self, rows: &dyn Fn(usize, usize) -> Option<&'r [f64]>, up_to_hz: f64) -> Spectrum {
         let of_channel = |lines: &Vec<Line>| {
-            let mut transformed: Vec<(usize, usize, Option<Vec<f64>>)> = Vec::new();
-            let mut all = Vec::with_capacity(lines.len());
-            let mut is_filled = false;
-            for line in lines {
-                let is_it = |(set, stretch, _): &&(usize, usize, _)| {
-                    (*set, *stretch) == (line.set, line.stretch)
-                };
-                if transformed.iter().find(is_it).is_none() {
-                    let own = rows(line.set, line.stretch);
-                    let own =
-                        own.map(|rows| self.transformed(rows, line.set, line.stretch, up_to_hz));
-                    is_filled |= own.is_some();
-                    transformed.push((line.set, line.stretch, own));
-                }
-                let (_, _, own) = transformed.iter().find(is_it).expect("made just now");
-                all.push(own.as_ref().map_or(0.0, |own| own[line.number]));
-            }
-            if is_filled { all } else { Vec::new() }
+            let mut all: BTreeMap<(usize, usize), Option<Vec<f64>>> = BTreeMap::new();
+            let of_line = |&Line { set, stretch, number, .. }: &Line| {
+                let of = || Some(self.transformed(rows(set, stretch)?, set, stretch, up_to_hz));
+                let own = all.entry((set, stretch)).or_insert_with(of);
+                own.as_ref().map_or(0.0, |own| own[number])
+            };
+            let lines: Vec<f64> = lines.iter().map(of_line).collect();
+            if all.values().any(Option::is_some) { lines } else { Vec::new() }
         };
         self.lines.iter().map(of_channel).collect()
     }

@@ -10,9 +10,7 @@
 //! Åström, Lischinsky 1995).
 
 use super::signals::Signals;
-use crate::policy::standstill::{
-    ANOTHER, CREEPS, EDGE, LEAVES, POWER, SAME, SLIDES, UNSEEN, UNSURE,
-};
+use crate::policy::standstill::{ANOTHER, CREEPS, LEAVES, POWER, SAME, SLIDES, UNSEEN};
 use denavit_measure::JointIndex;
 use std::ops::Range;
 
@@ -32,8 +30,6 @@ pub(super) struct Rest {
     leaves_s: f64,
     /// How fast it would cover a step of its encoder meanwhile [rad/s, m/s].
     pub(super) creep: f64,
-    /// How well it is known when it began and ended \[s\].
-    edge_s: f64,
 }
 
 impl Rest {
@@ -53,7 +49,7 @@ impl Rest {
         let beside = moves[0].or(moves[1]).unwrap_or(1.0);
         let directions = moves.map(|moved| moved.unwrap_or(beside).signum());
         let (leaves_s, sides) = (time_s.start, directions.to_vec());
-        Self { time_s, directions, sides, leaves_s, creep, edge_s: EDGE * step_s }
+        Self { time_s, directions, sides, leaves_s, creep }
     }
 
     /// What of it is within times \[s\]; none if that is nothing.
@@ -167,22 +163,8 @@ pub(super) fn rests(positions: &[f64], step: f64, times: [f64; 2]) -> Vec<Rest> 
 impl Signals {
     /// Has the drive of a joint rest where it does.
     pub(super) fn rest(&mut self, joint: JointIndex) {
-        self.bend_rests(joint, 0.0);
-    }
-
-    /// The motion with other friction of drives at rest, by so many deviations; none where there
-    /// are no rests.
-    pub(super) fn with_rests_bent(&self, by: f64) -> Option<Self> {
-        self.rests.iter().any(|rests| !rests.is_empty()).then(|| {
-            let mut other = self.clone();
-            (0..self.joints()).map(JointIndex).for_each(|joint| other.bend_rests(joint, by));
-            other
-        })
-    }
-
-    fn bend_rests(&mut self, joint: JointIndex, by: f64) {
         let (t, rests) = (self.t.clone(), self.rests[joint.0].clone());
-        alternate(self.drive_mut(joint)[0], &t, &rests, by);
+        alternate(self.drive_mut(joint)[0], &t, &rests);
     }
 
     /// The rests of a joint's drive.
@@ -203,23 +185,21 @@ impl Signals {
 }
 
 /// Gives rates at times \[s\] of a drive that rests another sign at each sample, so that their mean
-/// is the side of its friction, or bent by so many deviations. As long before and after it the
-/// drive moves as it is seen to, which a filter blurs.
-fn alternate(rates: &mut [f64], t: &[f64], rests: &[Rest], bent: f64) {
+/// is the side of its friction. As long before and after it the drive moves as it is seen to, which
+/// a filter blurs.
+fn alternate(rates: &mut [f64], t: &[f64], rests: &[Rest]) {
     for rest in rests {
         let Rest { time_s: Range { start, end }, directions, creep, .. } = rest;
         let [came, leaves] = directions;
-        let (bent, long) = (bent * UNSURE, end - start);
+        let long = end - start;
         for (from, to, direction) in [(start - long, *start, came), (*end, end + long, leaves)] {
             let moves = rates[within(t, &(from..to))].iter_mut();
             moves.for_each(|rate| *rate = direction * (direction * *rate).max(*creep));
         }
-        // What is known while it rests may be unknown beside it.
-        let beside = if bent == 0.0 { 0.0 } else { rest.edge_s };
-        let samples = within(t, &(start - beside..end + beside));
+        let samples = rest.samples(t);
         let mut sum = 0.0;
         for (rate, t) in rates[samples.clone()].iter_mut().zip(&t[samples]) {
-            sum += (rest.side(*t) + bent).clamp(-1.0, 1.0);
+            sum += rest.side(*t);
             let sign = if sum < 0.0 { -1.0 } else { 1.0 };
             sum -= sign;
             *rate = sign * creep;
@@ -315,7 +295,7 @@ mod tests {
                 rest.settle(&samples.map(|k| truth(t[k])).collect::<Vec<f64>>());
             }
             let mut rates = vec![0.0; t.len()];
-            alternate(&mut rates, &t, &found, 0.0);
+            alternate(&mut rates, &t, &found);
             for rest in &found {
                 let Range { start, end } = rest.time_s;
                 for part in [0.1, 0.3, 0.5, 0.7, 0.9] {

@@ -5,12 +5,11 @@ use super::candidate::Candidate;
 use super::data::{Data, ModelTorques};
 use super::floor::NoiseFloor;
 use super::hypothesis::{Hypothesis, Part};
-use super::problem::{Fitted, Found, Problem};
-use super::search::{Search, SearchOptions};
+use super::search::Search;
 use super::weighing::{Placed, Weighing};
 pub(super) use crate::policy::state::MOST_Z;
 use denavit_evidence::{Terms, policy};
-use denavit_measure::{LogIndex, Split};
+use denavit_measure::Split;
 
 /// An effect that was taken into the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,9 +56,6 @@ pub(super) struct State {
     pub(super) torques: Split<Vec<ModelTorques>>,
 }
 
-/// Rounds in which entries of z are held.
-const MOST_HELD: usize = 8;
-
 impl<'a> Setting<'a> {
     /// Effects that a model has.
     pub(super) fn effects<'s>(&'s self, taken: &'s [Taken]) -> Effects<'s> {
@@ -69,8 +65,7 @@ impl<'a> Setting<'a> {
     /// The model with effects that were found by all logs, fitted to those for training alone.
     pub(super) fn state(&self, parts: &[Part], z: &[f64]) -> State {
         let weighing = Weighing::new(vec![self.data.train], self.effects(&self.given), z);
-        let (all, options) = (self.candidates.len(), SearchOptions::default());
-        let search = Search::new(weighing, all, options, &mut |_| true);
+        let search = Search::new(weighing, self.candidates.len(), 0, &mut |_| true);
         let parts = parts.iter().map(|part| search.weighing.part(&part.placed)).collect();
         let fitted = search.settled(parts, None);
         self.fitted_state(&search.weighing, &fitted)
@@ -87,17 +82,13 @@ impl<'a> Setting<'a> {
                 beliefs.iter().map(|belief| belief.std).collect()
             })
             .collect();
-        for (place, part) in fitted.parts.iter().enumerate() {
-            let candidate = part.placed.candidate;
-            let parameters = self.candidates[candidate].law.parameters();
-            let values = fitted.values(place).into_iter().zip(parameters);
-            let values = values.map(|(value, one)| value.clamp(one.bounds[0], one.bounds[1]));
-            taken.push(Taken { candidate, values: values.collect() });
+        for place in 0..fitted.parts.len() {
+            taken.push(fitted.taken(place, self.candidates));
             deviations.push(fitted.deviations(place));
         }
         let torques = self.data.map(|data| data.model_torques(&z));
         let left = |data: &Data<'a>, torques: &[ModelTorques]| {
-            data.left(&self.fitted(&taken), &z, torques)
+            data.left(self.effects(&taken), &z, torques)
         };
         let residual = Split {
             train: left(self.data.train, &torques.train),
@@ -129,50 +120,18 @@ impl<'a> Setting<'a> {
     /// What the model as it is given leaves of a set of logs.
     pub(super) fn as_given(&self, data: &Data<'_>) -> Vec<f64> {
         let z = vec![0.0; data.columns.len()];
-        data.left(&self.fitted(&self.given), &z, &data.model_torques(&z))
-    }
-
-    /// The laws of effects with their values.
-    fn fitted(&self, taken: &[Taken]) -> Vec<Fitted<'a>> {
-        let of = |one: &Taken| Fitted {
-            law: self.candidates[one.candidate].law.as_ref(),
-            values: one.values.clone(),
-        };
-        taken.iter().map(of).collect()
+        data.left(self.effects(&self.given), &z, &data.model_torques(&z))
     }
 }
 
 impl Data<'_> {
-    /// What a model with z and laws leaves of the rows.
-    fn left(&self, laws: &[Fitted<'_>], z: &[f64], torques: &[ModelTorques]) -> Vec<f64> {
+    /// What a model with z and effects leaves of the rows.
+    fn left(&self, effects: Effects<'_>, z: &[f64], torques: &[ModelTorques]) -> Vec<f64> {
         let mut residual = self.residual_of(z);
-        for fitted in laws {
-            for (log, torques) in torques.iter().enumerate() {
-                let signals = &self.signals[log];
-                let motion = torques.motion(self.nominal, signals);
-                let response = fitted.law.response(motion, &fitted.values);
-                self.in_rows(LogIndex(log), signals, &response).subtract_from(&mut residual);
-            }
+        for Taken { candidate, values } in effects.taken {
+            let law = effects.candidates[*candidate].law.as_ref();
+            self.response(law, values, torques).subtract_from(&mut residual);
         }
         residual
     }
-}
-
-/// Fits laws with every entry of z free until it is at a bound.
-pub(super) fn within(
-    problem: &Problem<'_>,
-    laws: &mut [Fitted<'_>],
-    torques: &[ModelTorques],
-) -> Found {
-    let mut held = vec![None; problem.data.columns.len()];
-    let mut found = problem.fit(laws, torques);
-    for _ in 0..MOST_HELD {
-        let fitted = laws.iter_mut().zip(&found.values);
-        fitted.for_each(|(law, values)| law.values.clone_from(values));
-        if !super::held::hold(&mut held, &found.z, MOST_Z) {
-            break;
-        }
-        found = problem.holding(&held).fit(laws, torques);
-    }
-    found
 }

@@ -72,7 +72,7 @@ impl Rows {
         let mut rows = Self { names: Vec::new(), columns: Vec::new(), left: DVector::zeros(0) };
         let (mut columns, mut all_left): (Vec<Vec<f64>>, Vec<f64>) = (Vec::new(), Vec::new());
         for stretch in data.stretches.iter().filter(|stretch| stretch.equation == equation) {
-            let range = stretch.first..stretch.first + stretch.rows;
+            let range = stretch.range();
             all_left.extend(&left[range]);
             let signals = &data.signals[stretch.log.0];
             let names = data.nominal.model.joints.iter().map(|one| one.name.as_str());

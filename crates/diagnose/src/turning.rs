@@ -4,74 +4,13 @@
 //! the moment of its reversal: all that takes the sign of a rate is unsure there. While it is seen
 //! to rest, friction goes from one side to the other, but how is not known.
 
-use super::data::{Data, ModelTorques};
-use super::floor::rms;
-use super::known::{late_reversals, with_ringing};
-use super::law::Motion;
+use super::known::late_reversals;
 use super::nominal::{Nominal, Phi};
-use super::problem::Fitted;
 use super::rows::{PerJoint, torques as torques_of};
 use super::signals::Signals;
-use crate::policy::turning::{BETWEEN, CORNER};
 use denavit_evidence::policy;
 use denavit_measure::JointIndex;
 use std::ops::Range;
-
-/// How far a torque is not known [N m, N].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Unsure {
-    /// Since its rate is not known better than corners of the filter leave it.
-    pub(super) corner: f64,
-    /// Since the drive rests.
-    pub(super) rest: f64,
-}
-
-impl Unsure {
-    /// The deviation of a row, with a share of that of corners.
-    pub(super) fn deviation(self, share: f64) -> f64 {
-        (share * self.corner).hypot(self.rest)
-    }
-}
-
-/// For each row how far its torque is not known by the model and by laws.
-pub(super) fn turning(
-    data: &Data<'_>,
-    torques: &[ModelTorques],
-    laws: &[Fitted<'_>],
-) -> Vec<Unsure> {
-    let mut unsure = vec![Unsure::default(); data.rows()];
-    for (log, (signals, torques)) in data.signals.iter().zip(torques).enumerate() {
-        let all = |moved: &Signals| {
-            let total = torques_of(data.nominal, moved, &torques.phi);
-            let motion = Motion { total: &total, ..torques.motion(data.nominal, moved) };
-            let mut sum = total.clone();
-            for fitted in laws {
-                let response = fitted.law.response(motion, &fitted.values);
-                for (&equation, torque) in response.equations.iter().zip(&response.torque) {
-                    sum[equation].iter_mut().zip(torque).for_each(|(sum, torque)| *sum += torque);
-                }
-            }
-            sum
-        };
-        let bends = bends(signals, all);
-        let rests = [-0.5, 0.5].map(|by| Some(all(&signals.with_rests_bent(by)?)));
-        for stretch in data.stretches.iter().filter(|stretch| stretch.log.0 == log) {
-            let sizes: Vec<f64> =
-                bends[stretch.equation].iter().map(|b| BETWEEN * b.abs()).collect();
-            let apart = signals.rows_of(&sizes);
-            let rows = &mut unsure[stretch.first..stretch.first + stretch.rows];
-            if let [Some(a), Some(b)] = rests.each_ref().map(|torques| torques.as_ref()) {
-                let [a, b] = [a, b].map(|torques| signals.rows_of(&torques[stretch.equation]));
-                let both = a.iter().zip(&b).map(|(a, b)| (a - b).abs());
-                rows.iter_mut().zip(both).for_each(|(row, rest)| row.rest = rest);
-            }
-            // What is unsure of the filter's input shifts where it has no output.
-            let corners = with_ringing(&apart);
-            rows.iter_mut().zip(corners).for_each(|(row, corner)| row.corner = corner);
-        }
-    }
-    unsure
-}
 
 /// Tells drives at rest which friction balances their torques by the model, as long as what they
 /// slide with is enough for that.
@@ -127,28 +66,4 @@ pub(super) fn unnamed(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> Ve
         ]
     };
     (0..signals.joints()).map(of_joint).collect()
-}
-
-/// The second difference of torques by rates over what a corner of the filter hides of them: of a
-/// step its height, and nothing of a slope.
-fn bends(signals: &Signals, torques: impl Fn(&Signals) -> PerJoint) -> PerJoint {
-    let corner_s = CORNER / signals.torque_hz;
-    let moved = |sign: f64| {
-        let mut moved = signals.clone();
-        for joint in 0..signals.joints() {
-            let by = sign * corner_s * rms(signals.of_drive(JointIndex(joint))[1]);
-            let motor = moved.motor[joint].iter_mut().map(|[_, rates, _]| rates);
-            for rates in motor.chain([&mut moved.qd[joint]]) {
-                rates.iter_mut().for_each(|rate| *rate += by);
-            }
-            moved.rest(JointIndex(joint));
-        }
-        torques(&moved)
-    };
-    let [slower, as_is, faster] = [-1.0, 0.0, 1.0].map(moved);
-    let of = |equation: usize| {
-        let [a, b, c] = [&slower, &as_is, &faster].map(|all| &all[equation]);
-        (0..b.len()).map(|k| a[k] - 2.0 * b[k] + c[k]).collect()
-    };
-    (0..as_is.len()).map(of).collect()
 }

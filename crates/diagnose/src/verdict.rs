@@ -4,7 +4,7 @@ use super::data::Data;
 use super::diagnosis::{Diagnosis, Gaps};
 use super::effects_found::FoundEffect;
 use super::excitation::unseen;
-use super::leftover::{Leftover, name};
+use super::leftover::Leftover;
 use super::rounds::Found;
 use super::signals::Signals;
 use super::state::{Setting, State};
@@ -107,7 +107,6 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
     let most = diagnosis.leftovers.iter().max_by(|a, b| a.share.total_cmp(&b.share));
     let explained = diagnosis.effects.iter().map(|one| one.size).fold(0.0, f64::max);
     let unexplained = most.filter(|left| is_unexplained(left, explained));
-    let of_data: &Data<'_> = setting.data.train;
     let left = left_open(diagnosis);
     if left > policy::NOTHING_LIKE {
         let why = format!(
@@ -117,22 +116,19 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
         );
         return (Verdict::CannotTell, vec![why]);
     }
-    if let Some(left) = unexplained {
-        let what = format!(
-            "{} of the torque of {} is left in the bands in which the robot moves",
-            percent(left.share),
-            name(of_data, left)
-        );
-        let has_names = diagnosis.effects.iter().any(|one| one.is_named);
-        let verdict = if has_names { Verdict::PartlyExplained } else { Verdict::Unexplained };
-        return (verdict, vec![what]);
-    }
-    if let Some((place, share)) = broad(diagnosis) {
-        let what = format!(
-            "{} of the torque of {place} is left, evenly over all frequencies: more than sensors \
-             have",
-            percent(share)
-        );
+    let slow = unexplained.map(|left| {
+        let (share, place) = (percent(left.share), &diagnosis.places[left.equation]);
+        format!("{share} of the torque of {place} is left in the bands in which the robot moves")
+    });
+    let broad = || {
+        let (place, share) = broad(diagnosis)?;
+        let share = percent(share);
+        Some(format!(
+            "{share} of the torque of {place} is left, evenly over all frequencies: more than \
+             sensors have"
+        ))
+    };
+    if let Some(what) = slow.or_else(broad) {
         let has_names = diagnosis.effects.iter().any(|one| one.is_named);
         let verdict = if has_names { Verdict::PartlyExplained } else { Verdict::Unexplained };
         return (verdict, vec![what]);
@@ -173,13 +169,11 @@ fn probability(one: &FoundEffect) -> f64 {
 
 /// What it means that no effect was found, and why.
 fn nothing_found(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) {
-    let joints = &setting.data.train.nominal.model.joints;
-    let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
     let unseen = unseen(setting, &diagnosis.visible);
     // Numbers that are driven beyond what the model says stand for something else.
     let is_model_right = unseen.is_empty() && diagnosis.driven[1].is_empty();
     let verdict = if is_model_right { Verdict::NothingMissing } else { Verdict::CannotTell };
-    (verdict, unseen.iter().map(|one| one.sentence(&names)).collect())
+    (verdict, unseen)
 }
 
 /// What else must be known to trust the answer.
@@ -233,7 +227,7 @@ fn untold(data: &Data<'_>, residual: &[f64]) -> Vec<String> {
     let of = |equation: usize| {
         let own = data.stretches.iter().filter(|stretch| stretch.equation == equation);
         let [mut left, mut told, mut torque] = [0.0; 3];
-        for row in own.flat_map(|stretch| stretch.first..stretch.first + stretch.rows) {
+        for row in own.flat_map(|stretch| stretch.range()) {
             left += residual[row].powi(2);
             told += (data.weights[row] * residual[row]).powi(2);
             torque += data.torque[row].powi(2);

@@ -7,7 +7,7 @@ use super::nominal::Nominal;
 use super::spectra::Spectra;
 use super::state::{Effects, Taken};
 use denavit_evidence::{Base, Spectrum, Terms, Unpredicted, policy};
-use denavit_measure::{JointIndex, LogIndex};
+use denavit_measure::JointIndex;
 
 /// An effect near values of its parameters, with what is believed of them.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,16 +97,8 @@ impl<'a> Weighing<'a> {
     /// What an effect does to all sets.
     pub(super) fn responses(&self, taken: &Taken) -> Vec<RowResponse> {
         let law = self.candidates[taken.candidate].law.as_ref();
-        let of_set = |(data, torques): (&&Data<'a>, &Vec<ModelTorques>)| {
-            let mut all = RowResponse::default();
-            for (log, torques) in torques.iter().enumerate() {
-                let signals = &data.signals[log];
-                let response = law.response(torques.motion(data.nominal, signals), &taken.values);
-                all.append(data.in_rows(LogIndex(log), signals, &response));
-            }
-            all
-        };
-        self.sets.iter().zip(&self.torques).map(of_set).collect()
+        let sets = self.sets.iter().zip(&self.torques);
+        sets.map(|(data, torques)| data.response(law, &taken.values, torques)).collect()
     }
 
     /// The spectra of an effect's torque and of its gradient.
@@ -127,11 +119,12 @@ impl<'a> Weighing<'a> {
         start: &Start,
         log_share: f64,
     ) -> Option<(Placed, Terms)> {
-        let taken = Taken { candidate, values: start.values.clone() };
+        let values = start.iter().map(|(value, _)| *value).collect();
+        let taken = Taken { candidate, values };
         let (torque, gradient) = self.spectrum(&taken);
         let mut is_felt = self.spectra.largest_share(&torque) > policy::LEAST_FELT;
-        let deviation = |(place, given): (usize, &Option<f64>)| {
-            let share = self.spectra.largest_share(&gradient[place]);
+        let deviation = |(gradient, (_, given)): (&Spectrum, &(f64, Option<f64>))| {
+            let share = self.spectra.largest_share(gradient);
             match given {
                 Some(deviation) => {
                     is_felt |= share * deviation > policy::LEAST_FELT;
@@ -144,16 +137,14 @@ impl<'a> Weighing<'a> {
                 None => 0.0,
             }
         };
-        let is_term = start.values.is_empty();
-        let deviations: Vec<f64> = match is_term {
-            true => Vec::new(),
-            false if gradient.len() < start.values.len() => return None,
-            false => start.deviations.iter().enumerate().map(deviation).collect(),
-        };
+        if gradient.len() < start.len() {
+            return None;
+        }
+        let deviations = gradient.iter().zip(start).map(deviation).collect();
         let Taken { candidate, values } = taken;
         let placed = Placed { candidate, center: values.clone(), values, deviations, log_share };
         let terms = self.terms_of(&placed, torque, gradient);
-        (is_felt || is_term).then_some((placed, terms))
+        (is_felt || start.is_empty()).then_some((placed, terms))
     }
 
     /// Where the search of a candidate's parameters begins.

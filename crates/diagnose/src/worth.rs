@@ -2,7 +2,6 @@
 
 use super::hypothesis::{Hypothesis, Part};
 use super::search::Search;
-use super::state::Taken;
 use crate::policy::worth::RANK;
 use denavit_evidence::policy;
 use nalgebra::{DMatrix, DVector};
@@ -57,10 +56,6 @@ impl Search<'_> {
 
     /// What an effect does at the joint where that is most, as a share of its torque.
     pub(super) fn size(&self, hypothesis: &Hypothesis, place: usize) -> f64 {
-        let candidate = hypothesis.parts[place].placed.candidate;
-        let parameters = self.weighing.candidates[candidate].law.parameters();
-        let values = hypothesis.values(place).into_iter().zip(parameters);
-        let values = values.map(|(value, one)| value.clamp(one.bounds[0], one.bounds[1]));
-        self.weighing.size(&Taken { candidate, values: values.collect() })
+        self.weighing.size(&hypothesis.taken(place, self.weighing.candidates))
     }
 }

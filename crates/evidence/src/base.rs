@@ -2,7 +2,7 @@
 
 use crate::layout::{Layout, Spectrum};
 use crate::policy;
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DMatrixViewMut, DVector, SymmetricEigen};
 use std::ops::Range;
 
 /// Data with the columns of everything that the model itself is not sure of.
@@ -30,29 +30,28 @@ impl Base {
         let parameters = own.len();
         let of_channel = |channel: usize| {
             let mut columns = DMatrix::zeros(layout.rows(channel), parameters);
-            for (place, spectrum) in own.iter().enumerate() {
-                let filled = spectrum.get(channel).filter(|one| !one.is_empty());
-                if let Some(column) = filled {
-                    columns.column_mut(place).copy_from_slice(column);
-                }
-            }
+            fill(&mut columns.columns_mut(0, parameters), own, channel);
             columns
         };
         let own: Vec<DMatrix<f64>> = (0..layout.channels()).map(of_channel).collect();
         let basis = shown(&layout, &own, parameters);
         let own: Vec<DMatrix<f64>> = own.iter().map(|columns| columns * &basis).collect();
         let parameters = basis.ncols();
-        let mut base = Self { layout, data, own, basis, products: Vec::new(), parameters };
-        let cells: Vec<(usize, Range<usize>)> = base.layout.cells().collect();
-        let of_cell = |(channel, rows): &(usize, Range<usize>)| {
+        Self { layout, data: Vec::new(), own, basis, products: Vec::new(), parameters }.of(data)
+    }
+
+    /// The same of other data.
+    pub fn of(self, data: Spectrum) -> Self {
+        let parameters = self.parameters;
+        let of_cell = |(channel, rows): (usize, Range<usize>)| {
             let mut all = DMatrix::zeros(rows.len(), 1 + parameters);
-            all.column_mut(0).copy_from_slice(&base.data[*channel][rows.clone()]);
+            all.column_mut(0).copy_from_slice(&data[channel][rows.clone()]);
             all.columns_mut(1, parameters)
-                .copy_from(&base.own[*channel].rows(rows.start, rows.len()));
+                .copy_from(&self.own[channel].rows(rows.start, rows.len()));
             all.tr_mul(&all)
         };
-        base.products = cells.iter().map(of_cell).collect();
-        base
+        let products = self.layout.cells().map(of_cell).collect();
+        Self { products, data, ..self }
     }
 
     /// What factors of the own columns leave of the data.
@@ -67,6 +66,19 @@ impl Base {
     /// The factors of the own columns that have those of the combinations; others stay 0.
     pub(crate) fn own_factors(&self, combinations: &[f64]) -> Vec<f64> {
         (&self.basis * DVector::from_column_slice(combinations)).as_slice().to_vec()
+    }
+}
+
+/// Fills columns with the rows that spectra have in a channel.
+pub(crate) fn fill<'s>(
+    columns: &mut DMatrixViewMut<'_, f64>,
+    spectra: impl IntoIterator<Item = &'s Spectrum>,
+    channel: usize,
+) {
+    for (mut column, spectrum) in columns.column_iter_mut().zip(spectra) {
+        if let Some(rows) = spectrum.get(channel).filter(|rows| !rows.is_empty()) {
+            column.copy_from_slice(rows);
+        }
     }
 }
 

@@ -1,10 +1,11 @@
 //! A first look at many terms: with the variances of a hypothesis that is known, and then once
 //! with those that the look leaves.
 
-use crate::base::Base;
+use crate::base::{Base, fill};
 use crate::layout::Spectrum;
 use crate::policy;
 use crate::terms::Terms;
+use crate::unpredicted::unearned;
 use crate::weigh::positive;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::Range;
@@ -55,14 +56,8 @@ impl Glance {
             data.push(weighted(&rows, weights));
             let mut all = DMatrix::zeros(weights.len(), width);
             all.columns_mut(0, base.parameters).copy_from(&base.own[channel]);
-            for (place, spectrum) in more.iter().enumerate() {
-                if let Some(column) = spectrum.get(channel).filter(|one| !one.is_empty()) {
-                    all.column_mut(base.parameters + place).copy_from_slice(column);
-                }
-            }
-            for mut column in all.column_iter_mut() {
-                column.iter_mut().zip(weights).for_each(|(entry, weight)| *entry *= weight);
-            }
+            fill(&mut all.columns_mut(base.parameters, more.len()), more.iter().copied(), channel);
+            weigh(&mut all, weights);
             columns.push(all);
         }
         let mut normal = DMatrix::identity(width, width);
@@ -99,11 +94,8 @@ impl Glance {
             let known = weighted(&known, weights);
             let data = &self.data[channel] + &known;
             let mut columns = DMatrix::zeros(weights.len(), count);
-            for (place, spectrum) in terms.columns.iter().enumerate() {
-                if let Some(column) = spectrum.get(channel).filter(|one| !one.is_empty()) {
-                    columns.column_mut(place).copy_from(&weighted(column, weights));
-                }
-            }
+            fill(&mut columns.columns_mut(0, count), &terms.columns, channel);
+            weigh(&mut columns, weights);
             cross += self.columns[channel].tr_mul(&columns);
             normal += columns.tr_mul(&columns);
             inner += columns.tr_mul(&data);
@@ -169,13 +161,11 @@ impl Glance {
         if terms.unpredicted.share <= 0.0 {
             return 0.0;
         }
-        let mut channels = vec![Vec::new(); self.data.len()];
-        for ((channel, rows), variance) in self.cells.iter().zip(variances) {
+        let of = |((channel, rows), variance): (&(usize, Range<usize>), &f64)| {
             let weight = self.weights[*channel][rows.start];
-            channels[*channel].push((rows.clone(), variance / weight.powi(2)));
-        }
-        let both = terms.known.iter().zip(&channels);
-        both.map(|(known, cells)| terms.unpredicted.cost(known, cells)).sum()
+            (*channel, rows.clone(), variance / weight.powi(2))
+        };
+        unearned(&[terms], &self.cells.iter().zip(variances).map(of).collect::<Vec<_>>())
     }
 }
 
@@ -189,6 +179,12 @@ fn with_belief(beyond: &DMatrix<f64>, belief: f64) -> Option<Cholesky<f64, Dyn>>
     let mut normal = beyond.clone();
     (0..normal.nrows()).for_each(|k| normal[(k, k)] += belief);
     normal.cholesky()
+}
+
+fn weigh(columns: &mut DMatrix<f64>, weights: &[f64]) {
+    for mut column in columns.column_iter_mut() {
+        column.iter_mut().zip(weights).for_each(|(entry, weight)| *entry *= weight);
+    }
 }
 
 fn weighted(rows: &[f64], weights: &[f64]) -> DVector<f64> {

@@ -18,6 +18,7 @@
 //! what is left. Where little is taken away s counts beside v.
 
 use crate::policy;
+use crate::terms::Terms;
 use std::ops::Range;
 
 /// What an effect says nothing of.
@@ -29,10 +30,24 @@ pub struct Unpredicted {
     pub left: f64,
 }
 
+/// What terms do not earn where effects take away what data are, whatever that is. Cells are
+/// channels, rows and variances.
+pub(crate) fn unearned(terms: &[&Terms], cells: &[(usize, Range<usize>, f64)]) -> f64 {
+    let of = |one: &&Terms| -> f64 {
+        let of_channel = |(channel, known): (usize, &Vec<f64>)| {
+            let own = cells.iter().filter(|(of, ..)| *of == channel);
+            let own: Vec<_> = own.map(|(_, rows, variance)| (rows.clone(), *variance)).collect();
+            one.unpredicted.cost(known, &own)
+        };
+        one.known.iter().enumerate().map(of_channel).sum()
+    };
+    terms.iter().filter(|one| one.unpredicted.share > 0.0).map(of).sum()
+}
+
 impl Unpredicted {
     /// What the rows of a channel do not earn: `known` is taken away from them, and each of its
     /// cells has a variance.
-    pub(crate) fn cost(&self, known: &[f64], cells: &[(Range<usize>, f64)]) -> f64 {
+    fn cost(&self, known: &[f64], cells: &[(Range<usize>, f64)]) -> f64 {
         let rows: usize = cells.iter().map(|(rows, _)| rows.len()).sum();
         if self.share <= 0.0 || known.is_empty() || rows == 0 {
             return 0.0;

@@ -12,10 +12,11 @@
 //! there is known, and what it would do elsewhere is not. Their part of the evidence is Laplace's:
 //! the density of what is believed of them there, and how much narrower the data make it.
 
-use crate::base::Base;
+use crate::base::{Base, fill};
 use crate::orthant::bounded;
 use crate::policy;
 use crate::terms::Terms;
+use crate::unpredicted::unearned;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::Range;
 
@@ -57,12 +58,6 @@ pub(crate) struct Cell {
     pub(crate) least: f64,
 }
 
-/// What all terms of a hypothesis make of the data of one channel.
-struct Touched {
-    /// The data less known parts, then all columns of terms.
-    columns: DMatrix<f64>,
-}
-
 impl Base {
     /// Weighs a set of terms. Variances begin at those given, or else at what the data have.
     pub fn weigh(&self, terms: &[&Terms], start: Option<&[f64]>, rounds: usize) -> Weighed {
@@ -82,37 +77,26 @@ impl Base {
         let cells = self.cells_with(terms, width);
         let expected = self.layout.expected();
         let (evidence, variances) = settled(&cells, &expected, start, rounds, &[]);
-        let evidence = evidence - self.unpredicted(terms, &variances);
+        let both = self.layout.cells().zip(&variances);
+        let all: Vec<_> = both.map(|((channel, rows), v)| (channel, rows, *v)).collect();
+        let evidence = evidence - unearned(terms, &all);
         let posterior = Posterior::new(&cells, &variances, &[]);
         let mut weighed = posterior.told(terms, self.parameters, evidence, variances);
         weighed.own = self.own_factors(&weighed.own);
         weighed
     }
 
-    /// What is not earned where effects take away what data are, whatever that is.
-    fn unpredicted(&self, terms: &[&Terms], variances: &[f64]) -> f64 {
-        let mut channels = vec![Vec::new(); self.layout.channels()];
-        for ((channel, rows), variance) in self.layout.cells().zip(variances) {
-            channels[channel].push((rows, *variance));
-        }
-        let of = |one: &&Terms| -> f64 {
-            let both = one.known.iter().zip(&channels);
-            both.map(|(known, cells)| one.unpredicted.cost(known, cells)).sum()
-        };
-        terms.iter().map(of).sum()
-    }
-
     /// The products of every cell with those of terms.
     fn cells_with(&self, terms: &[&Terms], width: usize) -> Vec<Cell> {
         let own = self.parameters;
         let size = 1 + own + width;
-        let touched: Vec<Option<Touched>> = (0..self.layout.channels())
+        let touched: Vec<Option<DMatrix<f64>>> = (0..self.layout.channels())
             .map(|channel| self.touched(terms, channel, width))
             .collect();
         let of_cell = |((channel, rows), base): ((usize, Range<usize>), &DMatrix<f64>)| {
             let mut products = DMatrix::zeros(size, size);
             products.view_mut((0, 0), (1 + own, 1 + own)).copy_from(base);
-            if let Some(Touched { columns }) = &touched[channel] {
+            if let Some(columns) = &touched[channel] {
                 let columns = columns.rows(rows.start, rows.len());
                 let with_own = self.own[channel].rows(rows.start, rows.len()).tr_mul(&columns);
                 let each_other = columns.tr_mul(&columns);
@@ -132,23 +116,19 @@ impl Base {
         self.layout.cells().zip(&self.products).map(of_cell).collect()
     }
 
-    fn touched(&self, terms: &[&Terms], channel: usize, width: usize) -> Option<Touched> {
+    /// What terms make of the data of one channel: these less known parts, then all columns.
+    fn touched(&self, terms: &[&Terms], channel: usize, width: usize) -> Option<DMatrix<f64>> {
         if !terms.iter().any(|one| one.touches(channel)) {
             return None;
         }
         let mut columns = DMatrix::zeros(self.layout.rows(channel), 1 + width);
         columns.column_mut(0).copy_from_slice(&self.data[channel]);
-        let mut place = 1;
         for one in terms {
             one.less_known(channel, columns.column_mut(0).as_mut_slice());
-            for column in &one.columns {
-                if let Some(column) = column.get(channel).filter(|column| !column.is_empty()) {
-                    columns.column_mut(place).copy_from_slice(column);
-                }
-                place += 1;
-            }
         }
-        Some(Touched { columns })
+        let own = terms.iter().flat_map(|one| &one.columns);
+        fill(&mut columns.columns_mut(1, width), own, channel);
+        Some(columns)
     }
 }
 

@@ -11,9 +11,8 @@ use denavit_codegen::effect::{self, Channel, Effect};
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::functions::modelled;
 use denavit_diagnose::{
-    BeforeSprings, Candidate, Diagnosis, ExactAliases, Experiment, ExperimentOptions, Filters,
-    Moved, Request, SearchOptions, SeriesSpring, Uncertainty, Verdict, before_springs, candidates,
-    given_candidates, spring_candidates,
+    BeforeSprings, Candidate, Diagnosis, ExactAliases, Experiment, Filters, Moved, Request, Spring,
+    Verdict, before_springs, candidates, given_candidates, spring_candidates,
 };
 use denavit_identify::Ground;
 use denavit_measure::Split;
@@ -93,14 +92,13 @@ pub fn diagnose(
     let effects = with_own(&file.own);
     let kept = laws.iter().filter(|law| law.law.channel() != Some(Channel::Rate));
     let numbers: Vec<usize> = kept.map(|law| law.number).collect();
-    let (given_laws, given) = given_candidates(laws.clone(), Uncertainty::default());
+    let (given_laws, given) = given_candidates(laws.clone());
     let mut searched = candidates(&effects, &robot, &model);
     searched.append(&mut spring_candidates(&effects, &springs, &model));
     let candidates = with_given(given_laws, searched);
     let moved =
         Moved { source: &file.source, effects: &effects, numbers: &numbers, logs: logs.clone() };
     let aliases = ExactAliases::new(&robot, &effects);
-    let seed = options.experiment_seed;
     let request = Request {
         model: &model,
         springs: &springs,
@@ -109,11 +107,9 @@ pub fn diagnose(
         candidates: &candidates,
         given,
         aliases: aliases.as_ref(),
-        experiment: seed
-            .map(|seed| (&robot, ExperimentOptions { seed, ..ExperimentOptions::default() })),
+        experiment: options.experiment_seed.map(|seed| (&robot, seed)),
         moved: Some(&moved),
-        uncertainty: Uncertainty::default(),
-        options: SearchOptions { most_effects: options.most_effects },
+        most_effects: options.most_effects,
         filters: options.filter_hz.map(Filters::of_torques),
     };
     let mut best = Vec::new();
@@ -148,7 +144,7 @@ pub fn diagnose(
 struct Subject {
     robot: Robot,
     model: RegressionModel,
-    springs: Vec<SeriesSpring>,
+    springs: Vec<Spring>,
     logs: Split<Vec<MeasuredLog>>,
 }
 

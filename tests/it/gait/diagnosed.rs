@@ -1,7 +1,7 @@
 //! A robot that stands on the ground: TUlip's step, with a spring in one knee that its model lacks.
 
 use super::identified::walked;
-use denavit::diagnose::{Filters, Request, SearchOptions, Uncertainty, candidates, diagnose};
+use denavit::diagnose::{Filters, Request, candidates, diagnose};
 use denavit::effect;
 use denavit::identify::Ground;
 use denavit::measure::log::{ColumnMapping, LogFault, LogOf, MeasuredLog, read_log};
@@ -70,8 +70,7 @@ fn a_spring_in_the_knee_of_a_robot_that_steps_is_named() {
         aliases: None,
         experiment: None,
         moved: None,
-        uncertainty: Uncertainty::default(),
-        options: SearchOptions::default(),
+        most_effects: 6,
         filters: Some(Filters { motion_hz: 30.0, torque_hz: 15.0 }),
     };
     let found = diagnose(request, &mut |_| true).unwrap_or_else(|error| panic!("{error}"));

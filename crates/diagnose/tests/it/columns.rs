@@ -2,7 +2,7 @@
 //! place.
 
 use super::search::{puma, puma_log};
-use denavit_diagnose::{Diagnosis, Request, SearchOptions, Uncertainty, Verdict, diagnose};
+use denavit_diagnose::{Diagnosis, Request, Verdict, diagnose};
 use denavit_measure::log::MeasuredLog;
 
 /// What a model without candidates says of two logs that are misread alike.
@@ -24,8 +24,7 @@ fn diagnosed(misread: impl Fn(&mut MeasuredLog)) -> Diagnosis {
         aliases: None,
         experiment: None,
         moved: None,
-        uncertainty: Uncertainty::default(),
-        options: SearchOptions::default(),
+        most_effects: 6,
         filters: None,
     };
     diagnose(request, &mut |_| true).expect("a diagnosis")

@@ -4,8 +4,8 @@
 use denavit_codegen::effect;
 use denavit_codegen::regressor::functions::modelled;
 use denavit_diagnose::{
-    BeforeSprings, Candidate, Diagnosis, Error, Moved, Request, SearchOptions, Uncertainty,
-    Verdict, before_springs, candidates, diagnose, spring_candidates,
+    BeforeSprings, Candidate, Diagnosis, Error, Moved, Request, Verdict, before_springs,
+    candidates, diagnose, spring_candidates,
 };
 use denavit_measure::Split;
 use denavit_measure::log::{JointSignals, MeasuredLog};
@@ -157,7 +157,7 @@ fn diagnosed(hidden: Hidden) -> Result<(Diagnosis, Vec<Candidate>), Error> {
     let (mut train, mut held_out) = (vec![log(5, hidden)], vec![log(6, hidden)]);
     let before = before_springs(&robot, &model.joints, &mut [&mut train, &mut held_out]);
     let BeforeSprings { robot, springs } = before.expect("the logs have the motor");
-    assert!((springs[0].stiffness.value - STIFFNESS).abs() < 1e-9 * STIFFNESS);
+    assert!((springs[0].stiffness - STIFFNESS).abs() < 1e-9 * STIFFNESS);
     let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
     let mut candidates = candidates(effect::catalogue(), &robot, &model);
     candidates.append(&mut spring_candidates(effect::catalogue(), &springs, &model));
@@ -173,8 +173,7 @@ fn diagnosed(hidden: Hidden) -> Result<(Diagnosis, Vec<Candidate>), Error> {
         aliases: None,
         experiment: None,
         moved: Some(&moved),
-        uncertainty: Uncertainty::default(),
-        options: SearchOptions::default(),
+        most_effects: 6,
         filters: None,
     };
     let diagnosis = diagnose(request, &mut |_| true)?;

@@ -4,7 +4,6 @@ mod alias;
 mod columns;
 mod course;
 mod elastic;
-mod held;
 mod laws;
 mod motion;
 mod one_joint;

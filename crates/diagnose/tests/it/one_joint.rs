@@ -3,10 +3,7 @@
 
 use denavit_codegen::effect;
 use denavit_codegen::regressor::functions::modelled;
-use denavit_diagnose::{
-    Candidate, Diagnosis, ExactAliases, ExperimentOptions, Moved, Request, SearchOptions,
-    Uncertainty, candidates, diagnose,
-};
+use denavit_diagnose::{Candidate, Diagnosis, ExactAliases, Moved, Request, candidates, diagnose};
 use denavit_measure::Split;
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
@@ -64,10 +61,9 @@ pub(super) fn diagnosed(
         candidates: &all,
         given: Vec::new(),
         aliases: aliases.as_ref(),
-        experiment: Some((&robot, ExperimentOptions::default())),
+        experiment: Some((&robot, 1)),
         moved: Some(&moved),
-        uncertainty: Uncertainty::default(),
-        options: SearchOptions::default(),
+        most_effects: 6,
         filters: None,
     };
     let found = diagnose(request, &mut |_| true).expect("a diagnosis");

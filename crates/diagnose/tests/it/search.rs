@@ -3,9 +3,7 @@
 use super::laws::{Handwritten, Sample, kinds};
 use denavit_codegen::effect::Occurrence;
 use denavit_codegen::regressor::{RegressorOptions, Unknowns};
-use denavit_diagnose::{
-    Candidate, Gap, Gaps, Nominal, Request, SearchOptions, Uncertainty, diagnose, share_closed,
-};
+use denavit_diagnose::{Candidate, Gap, Gaps, Nominal, Request, diagnose, share_closed};
 use denavit_measure::JointIndex;
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
@@ -118,7 +116,7 @@ fn found(
     joint: usize,
 ) -> (Vec<String>, Option<f64>) {
     let model = puma();
-    let nominal = Nominal::new(&model, Uncertainty::default());
+    let nominal = Nominal::new(&model);
     let mut random = Random::new(seed);
     let truth: Vec<f64> = (0..nominal.len()).map(|_| random.normal().clamp(-0.9, 2.0)).collect();
     let phi = nominal.phi(&truth);
@@ -131,11 +129,10 @@ fn found(
         held_out: made(seed + 2),
         candidates: &candidates,
         given: Vec::new(),
-        uncertainty: Uncertainty::default(),
         aliases: None,
         experiment: None,
         moved: None,
-        options: SearchOptions::default(),
+        most_effects: 6,
         filters: None,
     };
     let found = diagnose(request, &mut |_| true).expect("a diagnosis");

@@ -3,8 +3,8 @@
 use super::Diagnosed;
 use crate::error::{Cause, Error};
 use crate::files::Files;
-use denavit_codegen::effect::{self, EffectSite};
-use denavit_identify::{EffectValues, NewEffect, NewPlace, with_effects};
+use denavit_codegen::effect;
+use denavit_identify::{EffectValues, NewEffect, with_effects};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -97,12 +97,7 @@ impl Diagnosed {
         let added: Vec<NewEffect<'_>> = named()
             .map(|one| {
                 let candidate = &self.candidates[one.candidate];
-                let known = self.effects.iter().find(|effect| effect.name == candidate.effect);
-                let at = match (known.map(|effect| effect.at), candidate.at.split_once(" with ")) {
-                    (Some(EffectSite::Model), _) => NewPlace::Model,
-                    (_, Some((joint, second))) => NewPlace::Pair(joint, second),
-                    _ => NewPlace::Link(&candidate.at),
-                };
+                let at = candidate.place(&self.effects);
                 let values = one.parameters.iter();
                 let values =
                     values.map(|value| (value.name.as_str(), value.value, finite(value.std)));

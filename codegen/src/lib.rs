@@ -1,6 +1,7 @@
 //! The symbolic compiler: from a robot's Denavit-Hartenberg table to exact dynamics to optimised
 //! Rust.
 
+pub mod alias;
 pub mod arena;
 pub mod build_script;
 pub mod derive;

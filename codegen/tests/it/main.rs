@@ -1,5 +1,6 @@
 //! The tests of the compiler, one module for each stage.
 
+mod alias;
 mod counts;
 mod decomposition;
 mod definite;

@@ -1,6 +1,5 @@
 //! The whole of it: logs and a model in, what is missing out, as data.
 
-use super::alias::ExactAliases;
 use super::candidate::Candidate;
 use super::columns::misread;
 use super::curve::{Curve, LoggedMotion, curves, logged};
@@ -24,6 +23,7 @@ use super::state::{Effects, Setting, State, Taken};
 use super::structure::{Structure, describe};
 use super::verdict::{Verdict, judge};
 use super::weighing::{Placed, Weighing};
+use denavit_codegen::alias::ExactAliases;
 use denavit_codegen::model::Robot;
 use denavit_evidence::policy;
 use denavit_measure::Split;

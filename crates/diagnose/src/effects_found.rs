@@ -1,7 +1,6 @@
 //! What is said of effects: those that were found, with what would do as well, and those that the
 //! model has.
 
-use super::alias::{ExactAliases, Named};
 use super::candidate::Candidate;
 use super::error::Error;
 use super::experiment::{Ambiguity, Experiment};
@@ -14,6 +13,7 @@ use super::search::Search;
 use super::signals::Filters;
 use super::state::{MOST_Z, Setting, State};
 use super::weighing::Placed;
+use denavit_codegen::alias::{ExactAliases, Named};
 use denavit_codegen::model::Robot;
 use denavit_evidence::policy;
 use denavit_plants::effect::LawParameter;

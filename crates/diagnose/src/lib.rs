@@ -7,7 +7,6 @@
 //! - [`Candidate`], [`Law`]: what may be missing
 //! - [`diagnose()`]: which effects are missing, by their evidence
 
-mod alias;
 mod between;
 mod candidate;
 mod catalogue;
@@ -53,7 +52,6 @@ mod verdict;
 mod weighing;
 mod worth;
 
-pub use alias::{ExactAliases, Named};
 pub use candidate::Candidate;
 pub use catalogue::{candidates, spring_candidates};
 pub use curve::{Curve, LoggedMotion};

@@ -7,12 +7,13 @@ use crate::logs::Logs;
 use crate::observer::{Observer, Progress, Reading, Stage, Watched};
 use crate::robot_file::{EffectUse, RobotFile, Treatment};
 pub use completed::{Completed, NamedEffect};
+use denavit_codegen::alias::ExactAliases;
 use denavit_codegen::effect::{self, Channel, Effect};
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::functions::modelled;
 use denavit_diagnose::{
-    BeforeSprings, Candidate, Diagnosis, ExactAliases, Experiment, Filters, Moved, Request, Spring,
-    Verdict, before_springs, candidates, given_candidates, spring_candidates,
+    BeforeSprings, Candidate, Diagnosis, Experiment, Filters, Moved, Request, Spring, Verdict,
+    before_springs, candidates, given_candidates, spring_candidates,
 };
 use denavit_identify::Ground;
 use denavit_measure::Split;

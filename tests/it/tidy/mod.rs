@@ -25,7 +25,7 @@ const MAX_COLUMNS: usize = 100;
 const MAX_COMMAND_LINES: usize = 6000;
 
 /// The stages of the compiler, in pipeline order: a stage uses only itself and those before it.
-const STAGES: [&str; 16] = [
+const STAGES: [&str; 17] = [
     "arena",
     "number",
     "expr",
@@ -39,6 +39,7 @@ const STAGES: [&str; 16] = [
     "dynamics",
     "regressor",
     "derive",
+    "alias",
     "program",
     "emit",
     "build_script",

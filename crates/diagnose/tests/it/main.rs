@@ -1,6 +1,5 @@
 //! What a model lacks.
 
-mod alias;
 mod columns;
 mod course;
 mod elastic;

@@ -1,9 +1,10 @@
 //! Robots of one joint, by hand: their torques in closed form along any motion, and their
 //! diagnosis.
 
+use denavit_codegen::alias::ExactAliases;
 use denavit_codegen::effect;
 use denavit_codegen::regressor::functions::modelled;
-use denavit_diagnose::{Candidate, Diagnosis, ExactAliases, Moved, Request, candidates, diagnose};
+use denavit_diagnose::{Candidate, Diagnosis, Moved, Request, candidates, diagnose};
 use denavit_measure::Split;
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;

@@ -6,14 +6,14 @@
 //! not: decided modulo 2^61 - 1 at random points, where no number is rounded. What is independent
 //! there is independent; what is dependent there is so but for a chance below 1e-12.
 
-use denavit_codegen::derive::{Flavour, derive};
-use denavit_codegen::effect::{Channel, Effect, Law, attach, with_term};
-use denavit_codegen::expr::{Dag, ExprId, derivative, substitute};
-use denavit_codegen::function::FunctionName;
-use denavit_codegen::model::{AddedEffect, EffectPlace, Robot, Terms, TorqueSide, bake_geometry};
-use denavit_codegen::number::Residue;
-use denavit_codegen::regressor::functions::modelled;
-use denavit_codegen::regressor::{Regressor, rank};
+use crate::derive::{Flavour, derive};
+use crate::effect::{Channel, Effect, Law, attach, with_term};
+use crate::expr::{Dag, ExprId, derivative, substitute};
+use crate::function::FunctionName;
+use crate::model::{AddedEffect, EffectPlace, Robot, Terms, TorqueSide, bake_geometry};
+use crate::number::Residue;
+use crate::regressor::functions::modelled;
+use crate::regressor::{Regressor, rank};
 use rustc_hash::FxHashMap;
 
 /// An effect in a place, by name: `stribeck` at `knee`, `knee with ankle` or `model`.

@@ -1,9 +1,9 @@
 //! Exact aliases, against what mechanics says of them.
 
-use super::robot;
+use super::robots::load as robot;
+use denavit_codegen::alias::{ExactAliases, Named};
 use denavit_codegen::effect;
 use denavit_codegen::model::Robot;
-use denavit_diagnose::{ExactAliases, Named};
 
 fn parameters(robot: &Robot, effect: &str, at: &str) -> Vec<String> {
     let aliases = ExactAliases::new(robot, effect::catalogue()).expect("a regressor");

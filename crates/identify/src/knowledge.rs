@@ -112,7 +112,7 @@ impl Knowledge {
     /// # Panics
     /// If `phi` or `root` are not of the model.
     pub fn add_information(&mut self, model: &RegressionModel, phi: &[f64], root: &DMatrix<f64>) {
-        let members = members(model);
+        let members = model.of_standard();
         assert_eq!(root.ncols(), members.nrows(), "one column for each base parameter");
         let rows = root * members;
         let values = root * DVector::from_column_slice(phi);
@@ -180,17 +180,6 @@ impl Knowledge {
             degrees_of_freedom: self.equations() - space.kept.len(),
         }
     }
-}
-
-/// phi = M theta0.
-fn members(model: &RegressionModel) -> DMatrix<f64> {
-    let mut members = DMatrix::zeros(model.rank(), model.standard.len());
-    for (row, parameter) in model.axes.iter().enumerate() {
-        for &(column, factor) in &parameter.members {
-            members[(row, column)] += factor;
-        }
-    }
-    members
 }
 
 /// The row space of scaled equations.

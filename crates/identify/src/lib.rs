@@ -8,7 +8,7 @@
 //! - [`two_stage`]: springs and motors of series elastic drives first, then the load
 //! - [`forward`]: the identified model in motion against a log
 //! - [`identify`]: all of it at once
-//! - [`updated_model`], [`model_values`], [`updated_text`]: back into the model file
+//! - [`updated_model`]: back into the model file
 //! - [`statics`], [`read_statics`]: what weighings and held postures say
 //! - [`knowledge`]: equations of parameters from all sources, joined, and what follows from them
 //! - [`Error`]: why there is no answer, of all of these
@@ -22,11 +22,7 @@ mod identification;
 mod idle;
 pub mod knowledge;
 mod known_effects;
-mod lacking;
 mod long;
-mod model_text;
-mod model_values;
-mod no_bodies;
 mod noisy_logs;
 mod odd_log;
 mod policy;
@@ -40,10 +36,6 @@ pub use error::{Error, ErrorKind};
 pub use identification::{Estimated, Identification, LeftOutRows, Request, estimated, identify};
 pub use idle::leave_out_idle_motors;
 pub use known_effects::{take_out, undo_logged_torques, undo_readings};
-pub use model_text::{
-    EffectValues, NewEffect, NewPlace, NewValue, updated as updated_text, with_effects,
-};
-pub use model_values::model_values;
 pub use noisy_logs::{Added, NoisyLog};
 pub use statics_file::{STATICS_FORMAT, read_statics, statics_schema};
 pub use updated_model::{UpdatedModel, updated_model};

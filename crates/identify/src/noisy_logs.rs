@@ -6,7 +6,6 @@ use crate::policy::noisy_logs::SHARE;
 use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
-use std::fmt;
 
 /// A log of which noise makes most, beside others.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,26 +26,6 @@ pub enum Added {
     Certainty(f64),
     /// Without it so many sums of parameters would not be shown.
     Sums(usize),
-}
-
-impl fmt::Display for NoisyLog {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { file, share, adds } = self;
-        write!(
-            f,
-            "Noise of the positions makes up to {:.0} % of what {file} shows of the parameters by \
-             itself. Its rows count as little as that noise says: without it ",
-            100.0 * share
-        )?;
-        match adds {
-            Added::Certainty(share) => {
-                let times = 1.0 + share;
-                write!(f, "no standard error would be more than {times:.2} times as large.")
-            }
-            Added::Sums(1) => write!(f, "one sum of parameters would not be shown."),
-            Added::Sums(sums) => write!(f, "{sums} sums of parameters would not be shown."),
-        }
-    }
 }
 
 /// Of several logs those of which noise makes most.

@@ -17,9 +17,7 @@ pub(super) fn odd_log(
         return None;
     }
     // weighted by log, a log that is odd would count for little
-    let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
-    let by_joint: Vec<f64> = found.noise_of_joints().into_iter().map(weight).collect();
-    let weights = vec![by_joint; condensed.independent.len()];
+    let weights = vec![found.weights_of_joints(); condensed.independent.len()];
     let without = |log: LogIndex| {
         let parts = (0..condensed.parts.len()).map(PartIndex);
         let others = parts.filter(|part| condensed.log_of_part[part.0] != log);

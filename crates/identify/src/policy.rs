@@ -88,9 +88,8 @@ pub(crate) mod errors {
     pub(crate) const MOST_ALIKE: f64 = 0.8;
 }
 
-/// `estimate/exceeding.rs`: Joints of whose torque far more is left in a log for validation than
-/// anything explains.
-pub(crate) mod exceeding {
+/// `estimate/held_out.rs`: Logs for validation held against those for the estimate.
+pub(crate) mod held_out {
     /// What is left must be this share of a joint's torque, as root of mean square,
     pub(crate) const OF_TORQUE: f64 = 0.05;
 
@@ -155,6 +154,9 @@ pub(crate) mod left_over {
     /// Noise is another one after half a period of the filter's cutoff: what is left is still
     /// correlated with itself by so much if it is none.
     pub(crate) const NO_NOISE: f64 = 0.5;
+
+    /// The share of a joint's torque from which on it is said that something is left that is none.
+    pub(crate) const SAID: f64 = 0.005;
 }
 
 /// `estimate/likelihood.rs`: Noise on both sides: what noise of the positions does to the residual
@@ -297,6 +299,14 @@ pub(crate) mod identification {
     /// The share of a torque from which on it is said what the filter makes of a motion that is
     /// too fast for it, if it is also this share of what is left.
     pub(crate) const SMEARED: [f64; 2] = [0.01, 0.3];
+
+    /// What is left with the model's own values, over the torques, from which on the robot is
+    /// another.
+    pub(crate) const OTHER: f64 = 10.0;
+
+    /// Standard errors between an estimate and the nearest bodies from which on what it is from is
+    /// doubted: good logs have next to none, misread ones any number.
+    pub(crate) const FAR: f64 = 20.0;
 }
 
 /// `idle.rs`: Motors that do not carry their joints: a brake holds them, or stiction.
@@ -322,23 +332,6 @@ pub(crate) mod knowledge {
 
     /// Below this share of its column an entry of a reduced system is rounding.
     pub(crate) const ROUNDING: f64 = 1e-9;
-}
-
-/// `lacking.rs`: That what is left of torques is no noise: something is not as the model has it.
-pub(crate) mod lacking {
-    /// The share of a joint's torque from which on it is said.
-    pub(crate) const SAID: f64 = 0.005;
-
-    /// What is left with the model's own values, over the torques, from which on the robot is
-    /// another.
-    pub(crate) const OTHER: f64 = 10.0;
-}
-
-/// `no_bodies.rs`: Estimates that belong to no bodies that exist.
-pub(crate) mod no_bodies {
-    /// Standard errors between an estimate and the nearest bodies from which on what it is from is
-    /// doubted: good logs have next to none, misread ones any number.
-    pub(crate) const FAR: f64 = 20.0;
 }
 
 /// `noisy_logs.rs`: Logs of which noise of the positions makes most, and those that bias

@@ -243,7 +243,7 @@ impl Identified {
         let found = &self.found;
         let judged = found.validate.as_ref().unwrap_or(&found.train);
         let is_doubted = found.is_noise() || !found.misread.is_empty() || found.is_of_other_robot();
-        let is_doubted = is_doubted && !accepts_suspicious || found.no_bodies().is_some();
+        let is_doubted = is_doubted && !accepts_suspicious || found.is_of_no_bodies();
         let is_same =
             |(_, remark): &(String, LogRemark)| matches!(remark, LogRemark::SameAs { .. });
         let explains = !self.remarks.iter().any(is_same)

@@ -59,7 +59,7 @@ pub fn consistent(model: &RegressionModel, found: &Estimate, start: &[f64]) -> C
     let rank = found.condensed.rank;
     let r = found.condensed.system(&triangles, &found.weights, &[]);
     let w = r.view((0, 0), (rank, rank)).into_owned();
-    let b = members(model);
+    let b = model.of_standard();
     let target = &w * &found.solution.phi;
     // Weights are 1 over noise, or 1 where there is none: what counts is the residual's own size.
     let scale = noise_scale(&r, &target, rank);
@@ -245,17 +245,6 @@ fn noise_scale(r: &DMatrix<f64>, target: &DVector<f64>, rank: usize) -> f64 {
     let floor = 1e-9 * target.norm();
     // Weighted rows have a deviation near 1, whatever their number is.
     if left > floor { 1.0 } else { floor.max(f64::MIN_POSITIVE) }
-}
-
-/// phi = B theta0.
-fn members(model: &RegressionModel) -> DMatrix<f64> {
-    let mut b = DMatrix::zeros(model.axes.len(), model.standard.len());
-    for (row, parameter) in model.axes.iter().enumerate() {
-        for &(column, factor) in &parameter.members {
-            b[(row, column)] += factor;
-        }
-    }
-    b
 }
 
 fn pieces(model: &RegressionModel) -> Vec<Piece> {

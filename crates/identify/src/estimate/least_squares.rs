@@ -13,7 +13,7 @@ use super::solve::{PriorRow, Solution, solve};
 use super::total;
 use super::triangle::Triangle;
 use super::weights::{ByLog, MAX_REWEIGHTING, SETTLED, Settled, moved};
-use crate::error::{Error, EstimateError};
+use crate::error::{Error, ErrorKind};
 use crate::policy::least_squares::{FEWEST_DEGREES, MOVES_LITTLE};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex};
@@ -30,6 +30,10 @@ const ROUNDS_OF_SCALES: usize = 10;
 /// Parts of logs that say by themselves how large errors are: with fewer, errors are also at least
 /// those that the filter's correlation makes, less what chance may show less of them.
 const ENOUGH_PARTS: usize = 48;
+
+const NOTHING_LEFT: &str = "no joint is ever as fast as `options.slow` says: nothing is left of \
+                            the logs\n  hint: a lower rate, or `options.slow=biasing`, which is \
+                            the default";
 
 /// How base parameters are estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -174,14 +178,19 @@ fn independent(logs: &[Conditioned]) -> f64 {
 }
 
 /// Whether logs have enough samples for an estimate.
-pub(crate) fn long_enough(logs: &[Conditioned], found: &Estimate) -> Result<(), EstimateError> {
+pub(crate) fn long_enough(logs: &[Conditioned], found: &Estimate) -> Result<(), Error> {
     let independent = independent(logs) as usize;
     let parameters = found.solution.excited();
     let needed = ROWS_OF_ONE * parameters;
-    match independent < needed {
-        true => Err(EstimateError::TooShort(independent, parameters, needed)),
-        false => Ok(()),
+    if independent >= needed {
+        return Ok(());
     }
+    let text = format!(
+        "the logs are too short: all torques have about {independent} samples that are independent \
+         of each other after the filter, and {parameters} parameters need {needed}\n  hint: more \
+         of the motion, or a higher cutoff (`conditions.filter`) if the log has little noise"
+    );
+    Err(Error::new(ErrorKind::TooShort, text))
 }
 
 /// The factors of both sides of rows: log, block, joint.
@@ -195,11 +204,7 @@ pub(super) struct Fit<'a> {
 
 impl Fit<'_> {
     /// Least squares, weighted if that is wanted, of the rows that count.
-    pub(super) fn plain(
-        &self,
-        model: &RegressionModel,
-        rows: Rows<'_>,
-    ) -> Result<Estimate, EstimateError> {
+    pub(super) fn plain(&self, model: &RegressionModel, rows: Rows<'_>) -> Result<Estimate, Error> {
         let (logs, _) = rows;
         let has_torque = logs.iter().any(|log| log.torque.iter().any(Option::is_some));
         self.of_condensed(Condensed::counted(model, rows), has_torque)
@@ -210,12 +215,15 @@ impl Fit<'_> {
         &self,
         condensed: Condensed,
         has_torque: bool,
-    ) -> Result<Estimate, EstimateError> {
+    ) -> Result<Estimate, Error> {
         let count: usize = condensed.parts.iter().flatten().map(Triangle::rows).sum();
         match count {
-            0 if has_torque => Err(EstimateError::NothingLeft),
-            0 => Err(EstimateError::NoTorque),
-            rows if rows < condensed.rank => Err(EstimateError::TooFewRows(rows, condensed.rank)),
+            0 if has_torque => Err(Error::new(ErrorKind::TooShort, NOTHING_LEFT)),
+            0 => Err(Error::new(ErrorKind::MissingColumn, "no torque was measured")),
+            rows if rows < condensed.rank => {
+                let text = format!("{rows} rows are too few for {} parameters", condensed.rank);
+                Err(Error::new(ErrorKind::TooShort, text))
+            }
             _ => Ok(self.by_noise(condensed, self.options.method != Method::Ordinary)),
         }
     }
@@ -294,7 +302,7 @@ impl Fit<'_> {
         rows: Rows<'_>,
         found: Estimate,
         loss: Loss,
-    ) -> Result<Estimate, EstimateError> {
+    ) -> Result<Estimate, Error> {
         self.reweighting(model, rows, found, |found, round| {
             // medians jump: with scales that stay the weights settle
             if round < ROUNDS_OF_SCALES {
@@ -310,7 +318,7 @@ impl Fit<'_> {
         model: &RegressionModel,
         rows: Rows<'_>,
         found: Estimate,
-    ) -> Result<Estimate, EstimateError> {
+    ) -> Result<Estimate, Error> {
         self.reweighting(model, rows, found, |found, _| {
             let ones = vec![vec![1.0; found.condensed.pattern.len()]; rows.0.len()];
             (Box::new(self.factors_of_noise(model, rows.0, found)), ones)
@@ -325,7 +333,7 @@ impl Fit<'_> {
         rows: Rows<'_>,
         mut found: Estimate,
         mut weigh: impl FnMut(&mut Estimate, usize) -> (Factors, ByLog),
-    ) -> Result<Estimate, EstimateError> {
+    ) -> Result<Estimate, Error> {
         let mut change = f64::INFINITY;
         for round in 0..MAX_REWEIGHTING {
             let (factors, deviations) = weigh(&mut found, round);
@@ -378,8 +386,11 @@ impl Fit<'_> {
 }
 
 /// An estimate whose last weights changed an entry of phi by so many standard errors, at most.
-fn settled(found: Estimate, change: f64) -> Result<Estimate, EstimateError> {
-    if change < MOVES_LITTLE { Ok(found) } else { Err(EstimateError::NotSettled) }
+fn settled(found: Estimate, change: f64) -> Result<Estimate, Error> {
+    match change < MOVES_LITTLE {
+        true => Ok(found),
+        false => Err(Error::new(ErrorKind::NotSettled, "the weights do not settle")),
+    }
 }
 
 /// What rows count by the loss of their residuals, whose deviations are the estimate's noise.
@@ -417,6 +428,12 @@ impl Estimate {
         let triangles = self.condensed.whole();
         let squares = self.condensed.squares(&triangles, self.solution.phi.as_slice());
         squares.iter().flatten().sum()
+    }
+
+    /// What rows of each joint count by its noise in all logs; 0 where no torque was measured.
+    pub(crate) fn weights_of_joints(&self) -> Vec<f64> {
+        let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
+        self.noise_of_joints().into_iter().map(weight).collect()
     }
 
     /// The deviation of each joint's residuals in all logs; 0 where no torque was measured.

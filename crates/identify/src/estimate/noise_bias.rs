@@ -12,11 +12,10 @@ use super::least_squares::Estimate;
 use super::left_out::{LeftOut, NumberedLog};
 use super::rows::{Block, BlockMaker};
 use super::solve::{Solution, solve};
-use super::validate::validate;
 use denavit_measure::condition::{Conditioned, Piece};
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_numerics::Random;
-use denavit_plants::regression::{RegressionJoint, RegressionModel};
+use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -122,7 +121,7 @@ pub(super) fn noise_squares(
     if log.position_noise.iter().all(|noise| *noise == 0.0) {
         return squares;
     }
-    let of_joint = |joint: usize| model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+    let of_joint = |joint: usize| model.of_joint(joint, phi.as_slice());
     let phi: Vec<Vec<f64>> = (0..squares.len()).map(of_joint).collect();
     let rests = &left_out.all_rests(own);
     let mut random = Random::new(SEED);
@@ -141,22 +140,29 @@ pub(super) fn noise_squares(
     squares
 }
 
-/// How much of each joint's torque in a log noise of its positions makes with phi, root of mean
+/// How much of each joint's torque in logs noise of their positions makes with phi, root of mean
 /// square over root of mean square; 0 where none was measured.
 pub(crate) fn noise_in_torques(
     model: &RegressionModel,
-    log: &Conditioned,
+    logs: &[&Conditioned],
     phi: &[f64],
 ) -> Vec<f64> {
-    let all = LeftOut::none(std::slice::from_ref(log));
-    let own = NumberedLog { number: LogIndex(0), log };
-    let noise = noise_squares(model, own, &all, &DVector::from_column_slice(phi));
-    let left = validate(model, phi, &[log]);
-    let share = |(joint, noise): (&RegressionJoint, f64)| {
-        let torque = left.joints.iter().find(|one| one.name == joint.name)?.torque_rms;
-        (torque > 0.0).then(|| (noise / log.samples() as f64).sqrt() / torque)
-    };
-    model.joints.iter().zip(noise).map(|both| share(both).unwrap_or(0.0)).collect()
+    let phi = DVector::from_column_slice(phi);
+    let mut sums = vec![[0.0; 2]; model.joints.len()];
+    for &log in logs {
+        let all = LeftOut::none(std::slice::from_ref(log));
+        let own = NumberedLog { number: LogIndex(0), log };
+        let noise = noise_squares(model, own, &all, &phi);
+        for ((sums, noise), torque) in sums.iter_mut().zip(noise).zip(&log.torque) {
+            let torque = torque.as_ref().map_or(&[][..], |torque| &torque[log.range.clone()]);
+            let squares = torque.iter().map(|torque| torque * torque).sum::<f64>();
+            sums[0] += noise;
+            sums[1] += squares / torque.len().max(1) as f64 * log.samples() as f64;
+        }
+    }
+    let share =
+        |[noise, torque]: [f64; 2]| if torque > 0.0 { (noise / torque).sqrt() } else { 0.0 };
+    sums.into_iter().map(share).collect()
 }
 
 /// Calls `visit` with blocks of a log, of which so many samples are looked at before decimation:

@@ -2,7 +2,7 @@
 //! rests.
 
 use super::least_squares::Estimate;
-use super::likelihood::noise_of_positions;
+use super::noise_bias::noise_in_torques;
 use super::rows::BlockMaker;
 use super::validate::{Validation, validate};
 use crate::policy::unexplained::{
@@ -11,7 +11,6 @@ use crate::policy::unexplained::{
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
-use std::fmt;
 
 /// Samples of each log that are looked at, and in blocks of so many.
 const BLOCKS: usize = 16;
@@ -68,40 +67,6 @@ pub struct Unexplained {
     pub beside: Option<f64>,
 }
 
-impl fmt::Display for Unexplained {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (joint, percent) = (&self.joint, 100.0 * self.share);
-        write!(f, "The torque of {joint} is not explained: {percent:.0} % of it is left")?;
-        if let Some(file) = &self.file {
-            write!(f, " in {file}")?;
-        }
-        match (self.beside, self.rest_s) {
-            (Some(share), _) => {
-                return write!(
-                    f,
-                    ", without what is near reversals, and {:.1} % in the logs for the estimate: \
-                     far more than noise, the filter and errors of the parameters make. The unit \
-                     of its time or of another column may be another, or the robot, or it shows a \
-                     law that the model lacks; it does not confirm what was found.",
-                    100.0 * share
-                );
-            }
-            (None, None) => write!(
-                f,
-                ", although the joint moves. Its column may be another quantity, in another unit, \
-                 or noise, or the zero of a position may be off, or the model's geometry"
-            )?,
-            (None, Some([from, to])) => write!(
-                f,
-                ", although the joint rests, from {from:.2} to {to:.2} s, and its friction holds \
-                 less. The column of its position may be stuck while it moves, or stiction or a \
-                 brake holds it, which no equation knows"
-            )?,
-        }
-        write!(f, "; what was found is not to be believed.")
-    }
-}
-
 /// Logs, of some of which noise makes most.
 #[derive(Clone, Copy)]
 pub struct ShownLogs<'a> {
@@ -135,7 +100,7 @@ pub fn unexplained_joints(
     let phi = judged.found.solution.phi.as_slice();
     let together: Vec<&Conditioned> = shown.iter().map(|&log| &logs[log.0]).collect();
     // a joint that moves may be left with nothing but noise of the positions
-    let noise = noise_of_positions(model, &together, phi);
+    let noise = noise_in_torques(model, &together, phi);
     let least: Vec<f64> = noise.iter().map(|noise| (OF_NOISE * noise).max(LEFT)).collect();
     let mut all = moving(model, &together, judged, &least);
     let not_noise = vec![f64::INFINITY; noise.len()];
@@ -256,14 +221,10 @@ fn at_rest(
     let mut joints: Vec<RestingJoint> = (0..rests.len())
         .map(|joint| RestingJoint { left: Vec::new(), held: held(joint) })
         .collect();
-    maker.for_each(|block| {
-        let places: Vec<usize> = log.places(block.first, block.samples).collect();
-        for (joint, rests) in rests.iter().enumerate().filter(|(_, rests)| !rests.is_empty()) {
-            let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
-            let left = block.residual(JointIndex(joint), &own).unwrap_or_default();
-            let rests = places.iter().map(|place| rests[place - log.range.start]);
-            joints[joint].left.extend(left.into_iter().zip(rests));
-        }
+    let places: Vec<usize> = log.places(SampleIndex(0), log.samples()).collect();
+    maker.for_each_left(phi, |joint, sample, [.., left]| {
+        let rests = rests[joint.0].get(places[sample.0] - log.range.start);
+        joints[joint.0].left.extend(rests.map(|rests| (left, *rests)));
     });
     joints
 }

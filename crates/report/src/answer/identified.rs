@@ -1,5 +1,6 @@
 //! What was identified, as a table.
 
+use crate::identification::{notes, warnings};
 use crate::{Align, Table, paragraph, short};
 use denavit_identify::estimate::{IdentifiedParameter, JointResidual, Status};
 use denavit_identify::forward::Forward;
@@ -17,7 +18,7 @@ fn write_doubts(out: &mut String, shown: &Identified) -> fmt::Result {
     for (file, remark) in &shown.remarks {
         writeln!(out, "{file}: {remark}")?;
     }
-    for text in shown.found.notes().into_iter().chain(shown.found.warnings()) {
+    for text in notes(&shown.found).into_iter().chain(warnings(&shown.found)) {
         writeln!(out, "{}", paragraph("", "", &text))?;
     }
     Ok(())
@@ -55,7 +56,7 @@ fn write(out: &mut String, shown: &Identified) -> fmt::Result {
     if let Some(gap) = &shown.simulated {
         write_simulation(out, gap)?;
     }
-    for text in found.notes().into_iter().chain(found.warnings()) {
+    for text in notes(found).into_iter().chain(warnings(found)) {
         writeln!(out, "\n{}", paragraph("", "", &text))?;
     }
     write_nearest(out, found.consistent.distance)

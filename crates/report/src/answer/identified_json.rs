@@ -1,5 +1,6 @@
 //! What was identified, as JSON.
 
+use crate::identification::warnings;
 use denavit_identify::estimate::{Consistent, IdentifiedParameter, JointResidual, Status};
 use denavit_identify::forward::{Compared, Forward, ForwardJoint, ForwardKind};
 use denavit_plants::regression::{RegressionModel, StandardParameter};
@@ -280,7 +281,7 @@ pub fn identified_json(shown: &Identified) -> impl Serialize + '_ {
         remarks: remarks
             .iter()
             .map(|(file, remark)| format!("{file}: {remark}"))
-            .chain(found.warnings())
+            .chain(warnings(found))
             .collect(),
     }
 }

@@ -1,11 +1,13 @@
 //! What was identified, as a page.
 
 mod curves;
+mod doubts;
 mod parameters;
 mod shown_by;
 mod simulation;
 
 pub(super) use curves::torques;
+pub(crate) use doubts::{notes, warnings};
 pub(super) use parameters::base_parameters;
 
 use super::html::{
@@ -94,7 +96,7 @@ impl IdentificationPage<'_> {
                 (Grade::Bad, text)
             }
             true => {
-                let is_said = found.warnings().is_empty() && found.lacking.is_empty();
+                let is_said = warnings(found).is_empty() && found.lacking.is_empty();
                 let is_clear = hidden == 0 && is_said;
                 let grade = if is_clear { Grade::Good } else { Grade::Fair };
                 (grade, format!("The parameters explain all but {left} of the torques of {whose}"))
@@ -128,13 +130,13 @@ impl IdentificationPage<'_> {
     fn warnings(&self) -> Option<Section> {
         let found = self.found;
         let nearest = Some(nearest_bodies(found.consistent.distance)).filter(|one| !one.is_empty());
-        let warnings = found.warnings().into_iter().chain(nearest.filter(|_| {
+        let warnings = warnings(found).into_iter().chain(nearest.filter(|_| {
             // said by the warnings, unless noise makes most
-            found.no_bodies().is_none()
+            !found.is_of_no_bodies()
         }));
         let mut parts: Vec<Part> = warnings.map(|text| Part::Paragraph { text }).collect();
         let notes: Vec<Part> =
-            found.notes().into_iter().map(|text| Part::Paragraph { text }).collect();
+            notes(found).into_iter().map(|text| Part::Paragraph { text }).collect();
         if !notes.is_empty() {
             let summary = "Samples that were left out, and what is left without a name".to_owned();
             parts.push(Part::Folded { summary, parts: notes });

@@ -6,8 +6,8 @@ use crate::logs::Logs;
 use crate::observer::Observer;
 use crate::robot_file::RobotFile;
 use denavit_identify::knowledge::{Consequences, Knowledge};
-use denavit_identify::read_statics;
 use denavit_identify::statics::{check_units, static_knowledge};
+use denavit_identify::{Identification, read_statics};
 use denavit_plants::regression::RegressionModel;
 
 /// What follows from measurements at rest.
@@ -19,8 +19,12 @@ pub struct StaticsFound {
     pub knowledge: Knowledge,
     /// What follows from them.
     pub found: Consequences,
-    /// What was noticed.
+    /// What was noticed of the logs.
     pub remarks: Vec<String>,
+    /// What these say by themselves, if there are any.
+    pub of_logs: Option<Box<Identification>>,
+    /// Why less follows than might.
+    pub reasons: Vec<&'static str>,
     /// Whether the observer stopped the work on the logs, as [`Identified::is_stopped`] says.
     pub is_stopped: bool,
 }
@@ -55,18 +59,18 @@ pub fn identify_statics(
         check_units(&model, &measured).map_err(wrong)?;
     }
     let mut knowledge = static_knowledge(&model, &measured).map_err(wrong)?;
-    let mut remarks = Vec::new();
-    let mut is_stopped = false;
+    let (mut remarks, mut reasons) = (Vec::new(), Vec::new());
+    let (mut of_logs, mut is_stopped) = (None, false);
     if !logs.train.is_empty() {
         let identified = identify(robot, logs, options, observer)?;
         is_stopped = identified.is_stopped;
         remarks.extend(identified.remarks.iter().map(|(file, one)| format!("{file}: {one}")));
-        remarks.extend(identified.found.warnings());
-        remarks.extend(join(&model, &identified, &mut knowledge).map(str::to_owned));
+        reasons.extend(join(&model, &identified, &mut knowledge));
+        of_logs = Some(Box::new(identified.found));
     }
     let found = knowledge.consequences();
-    remarks.extend(nothing_follows(&knowledge, &found).map(str::to_owned));
-    Ok(StaticsFound { model, knowledge, found, remarks, is_stopped })
+    reasons.extend(nothing_follows(&knowledge, &found));
+    Ok(StaticsFound { model, knowledge, found, remarks, of_logs, reasons, is_stopped })
 }
 
 /// Why nothing follows, if nothing does.

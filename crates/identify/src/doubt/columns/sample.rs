@@ -1,6 +1,6 @@
 //! The rows of some samples of logs under a reading of their columns.
 
-use super::line::Line;
+use super::misreading::Misreading;
 use super::reading::Reading;
 use super::window::{Window, with_sign};
 use crate::estimate::{Coulomb, coulomb};
@@ -211,7 +211,7 @@ impl<'a> Sample<'a> {
     pub(super) fn rows_along(
         &mut self,
         reading: &Reading,
-        lines: &[Line],
+        lines: &[Misreading],
         phi: &DVector<f64>,
     ) -> Vec<Option<JointRows>> {
         let n = self.model.joints.len();
@@ -221,7 +221,7 @@ impl<'a> Sample<'a> {
             for line in lines {
                 let step = line.step();
                 let [above, below] = [step, -step].map(|by| {
-                    let other = reading.with(line.at(by), &self.model.joints);
+                    let other = reading.with(line.of_size(by), &self.model.joints);
                     self.read(window, &other);
                     (0..n)
                         .map(|joint| self.left(window, &other, JointIndex(joint), phi))
@@ -231,7 +231,7 @@ impl<'a> Sample<'a> {
                     let slope = |(above, below): (f64, f64)| (below - above) / (2.0 * step);
                     own.push(above.into_iter().zip(below).map(slope).collect::<Vec<f64>>());
                 }
-                if let Line::Gain(joint) = *line {
+                if let Misreading::TorqueGain(joint, _) = *line {
                     // of the torque that phi makes: the measured one times 0 would explain all
                     self.read(window, reading);
                     let measured = self.windows[window].torque(&reading.torques[joint.0]);

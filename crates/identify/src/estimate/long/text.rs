@@ -4,7 +4,7 @@
 use super::super::condensed::Condensed;
 use super::super::triangle::Triangle;
 use super::LongRows;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::policy::long::LARGEST;
 use denavit_measure::LogIndex;
 use denavit_plants::regression::RegressionModel;
@@ -15,7 +15,7 @@ use std::fmt;
 const MOST_ROWS: usize = 1 << 52;
 
 fn wrong(reason: impl fmt::Display) -> Error {
-    Error::of_piece(reason.to_string())
+    Error::new(ErrorKind::Piece, reason.to_string())
 }
 
 impl LongRows {

@@ -215,7 +215,7 @@ impl Estimated {
             reversals: reversals(model, train, &found, options),
             left_out: left_out(model, train, &found, &counted),
             contradicting_logs,
-            noisy_logs: noisy_logs(model, train, &found),
+            noisy_logs: noisy_logs(train, &found),
             lacking: lacking(model, train_logs, &found, &torques),
             periods: train.iter().map(Conditioned::periods).sum(),
             parameters: listed,
@@ -241,10 +241,8 @@ pub(super) fn shares(model: &RegressionModel, found: &Estimate, left: &Validatio
 
 /// Root of mean square of each joint's torque; 0 where none was measured.
 fn torques(model: &RegressionModel, left: &Validation) -> Vec<f64> {
-    let of_joint = |joint: &RegressionJoint| {
-        let found = left.joints.iter().find(|one| one.name == joint.name);
-        found.map_or(0.0, |one| one.torque_rms)
-    };
+    let of_joint =
+        |joint: &RegressionJoint| left.joint(&joint.name).map_or(0.0, |one| one.torque_rms);
     model.joints.iter().map(of_joint).collect()
 }
 
@@ -297,7 +295,7 @@ fn filter_error(
 ) -> Option<(String, f64)> {
     let names = model.joints.iter().map(|joint| joint.name.clone());
     let is_large = |(name, share): &(String, f64)| {
-        let left = left.joints.iter().find(|one| one.name == *name);
+        let left = left.joint(name);
         *share > SMEARED[0] && left.is_some_and(|left| *share > SMEARED[1] * left.relative)
     };
     let all = names.zip(filter_errors(model, logs, phi)).filter(is_large);

@@ -1,6 +1,6 @@
 //! Logs of which noise of the positions makes most, and those that bias parameters by it.
 
-use super::estimate::{BIASING, Estimate, IdentifiedParameter, NoiseOfLog, Solution, solve};
+use super::estimate::{BIASING, Estimate, IdentifiedParameter, NoiseOfLog};
 pub(super) use crate::policy::noisy_logs::MOST;
 use crate::policy::noisy_logs::SHARE;
 use denavit_measure::LogIndex;
@@ -14,33 +14,16 @@ pub struct NoisyLog {
     pub file: String,
     /// The largest share of noise in what it shows of a direction of the parameters by itself.
     pub share: f64,
-    /// What it adds.
-    pub adds: Added,
-}
-
-/// What a log adds to the others.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Added {
-    /// Without it the standard error of some parameter would be larger by this share, no other one
-    /// by more.
-    Certainty(f64),
-    /// Without it so many sums of parameters would not be shown.
-    Sums(usize),
 }
 
 /// Of several logs those of which noise makes most.
-pub(super) fn noisy_logs(
-    model: &RegressionModel,
-    logs: &[Conditioned],
-    found: &Estimate,
-) -> Vec<NoisyLog> {
-    let noisy = |(_, one): &(usize, &NoiseOfLog)| logs.len() > 1 && one.share > MOST;
-    let of = |(log, one): (usize, &NoiseOfLog)| NoisyLog {
-        file: logs[log].file.clone(),
+pub(super) fn noisy_logs(logs: &[Conditioned], found: &Estimate) -> Vec<NoisyLog> {
+    let noisy = |(_, one): &(&Conditioned, &NoiseOfLog)| logs.len() > 1 && one.share > MOST;
+    let of = |(log, one): (&Conditioned, &NoiseOfLog)| NoisyLog {
+        file: log.file.clone(),
         share: one.share,
-        adds: added(model, LogIndex(log), found),
     };
-    found.noise_of_logs.iter().enumerate().filter(noisy).map(of).collect()
+    logs.iter().zip(&found.noise_of_logs).filter(noisy).map(of).collect()
 }
 
 /// The logs for an estimate of which noise does not make most; all if it does of all.
@@ -49,25 +32,6 @@ pub(super) fn shown_logs(logs: usize, found: &Estimate) -> Vec<LogIndex> {
     let all = (0..logs).map(LogIndex);
     let shown: Vec<LogIndex> = all.clone().filter(|&log| share(log) <= MOST).collect();
     if shown.is_empty() { all.collect() } else { shown }
-}
-
-/// What a log adds to the others, as if residuals were independent.
-fn added(model: &RegressionModel, log: LogIndex, found: &Estimate) -> Added {
-    let mut weights = found.weights.clone();
-    weights[log.0].fill(0.0);
-    let condensed = &found.condensed;
-    let others = condensed.system(&condensed.whole(), &weights, &[]);
-    let without = solve(&others, found.solution.phi.as_slice());
-    if without.excited() < found.solution.excited() {
-        return Added::Sums(found.solution.excited() - without.excited());
-    }
-    let deviations = |solution: &Solution| -> Vec<f64> {
-        let listed = model.to_listed() * &solution.factor;
-        listed.row_iter().map(|row| row.norm()).collect()
-    };
-    let both = deviations(&without).into_iter().zip(deviations(&found.solution));
-    let larger = both.filter(|(_, with)| *with > 0.0).map(|(without, with)| without / with - 1.0);
-    Added::Certainty(larger.fold(0.0, f64::max))
 }
 
 /// For each log beside others whether it would need a lower filter if it were alone: noise makes

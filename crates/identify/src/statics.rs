@@ -78,30 +78,23 @@ pub fn check_units(
 /// the postures; none if the model lacks one, or there are no two torques.
 fn misread_postures(model: &RegressionModel, measurements: &[StaticMeasurement]) -> Option<Error> {
     let phi = model.model_axes()?;
-    let n = model.joints.len();
-    let mut evaluator = model.evaluator();
-    let mut left = |of_angles: f64, of_torques: f64| -> Option<f64> {
+    let left = |of_angles: f64, of_torques: f64| -> Option<f64> {
         let (mut sums, mut count) = ([0.0; 2], 0);
         for measurement in measurements {
             let StaticMeasurement::Posture { q, torques } = measurement else { continue };
-            if q.len() != n {
+            if q.len() != model.joints.len() {
                 return None;
             }
             let of_joint = |(q, joint): (&f64, &RegressionJoint)| {
                 if joint.slides { *q } else { of_angles * q }
             };
             let q = q.iter().zip(&model.joints).map(of_joint);
-            let resting: Vec<f64> = q.chain(std::iter::repeat_n(0.0, 2 * n)).collect();
-            let columns: Vec<&[f64]> = resting.iter().map(std::slice::from_ref).collect();
-            let mut rows = RegressionRows::default();
-            evaluator.evaluate(&columns, &mut rows).expect("three numbers for each joint");
+            let resting: Vec<Vec<f64>> = resting(q, model).into_iter().map(|q| vec![q]).collect();
+            let computed = model.torques(&resting, &phi);
             for torque in torques {
                 let joint = model.joints.iter().position(|joint| joint.name == torque.joint)?;
-                let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
-                let mut computed = [0.0];
-                rows.torque(joint, &own, &mut computed);
                 let measured = of_torques * torque.torque;
-                sums[0] += (measured - computed[0]).powi(2);
+                sums[0] += (measured - computed[joint][0]).powi(2);
                 sums[1] += measured * measured;
                 count += 1;
             }
@@ -126,6 +119,11 @@ fn misread_postures(model: &RegressionModel, measurements: &[StaticMeasurement])
         100.0 * after
     );
     Some(Error::new(ErrorKind::Measurements, text))
+}
+
+/// Positions of joints with rates and accelerations of 0.
+fn resting(q: impl Iterator<Item = f64>, model: &RegressionModel) -> Vec<f64> {
+    q.chain(std::iter::repeat_n(0.0, 2 * model.joints.len())).collect()
 }
 
 /// What measurements at rest say of the standard parameters, or all that is wrong with them.
@@ -162,8 +160,7 @@ pub fn static_knowledge(
                     faults.push(Error::of_measurement(at, BAD_NUMBER));
                     continue;
                 }
-                let resting: Vec<f64> =
-                    q.iter().copied().chain(std::iter::repeat_n(0.0, 2 * n)).collect();
+                let resting = resting(q.iter().copied(), model);
                 let columns: Vec<&[f64]> = resting.iter().map(std::slice::from_ref).collect();
                 let mut rows = RegressionRows::default();
                 evaluator.evaluate(&columns, &mut rows).expect("three numbers for each joint");

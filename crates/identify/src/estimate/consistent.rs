@@ -47,12 +47,6 @@ enum Piece {
     Own(usize),
 }
 
-impl Piece {
-    fn len(&self) -> usize {
-        if let Self::Body(_) = self { 10 } else { 1 }
-    }
-}
-
 /// The nearest parameters of bodies that exist; `start` is theta0 of the model before.
 pub fn consistent(model: &RegressionModel, found: &Estimate, start: &[f64]) -> Consistent {
     let triangles = found.condensed.whole();
@@ -63,69 +57,72 @@ pub fn consistent(model: &RegressionModel, found: &Estimate, start: &[f64]) -> C
     let target = &w * &found.solution.phi;
     // Weights are 1 over noise, or 1 where there is none: what counts is the residual's own size.
     let scale = noise_scale(&r, &target, rank);
+    let coordinates = Coordinates::of(model);
+    let first = coordinates.of_start(start);
     let mut problem = Problem {
-        model,
         jacobian: (&w * b) / scale,
         target: target / scale,
         bounds: Bounds::new(model),
         weight: 0.0,
+        coordinates,
+        first,
     };
-    let pieces = pieces(model);
-    let first = coordinates(model, &pieces, start);
-    let (mut eta, mut steps) = problem.search(&pieces, &first, &first);
-    let cost = problem.cost(&pieces, &eta, &first);
+    let (mut eta, mut steps) = problem.search(&problem.first);
+    let cost = problem.cost(&eta);
     if cost > FAR.powi(2) * rank as f64 {
-        let (next, more) = problem.search_in_stages(&pieces, &first);
+        let (next, more) = problem.search_in_stages();
         steps += more;
-        eta = if problem.cost(&pieces, &next, &first) < cost { next } else { eta };
+        eta = if problem.cost(&next) < cost { next } else { eta };
     }
     for weight in BOUND_WEIGHTS {
-        if problem.bounds.hold(&file_values(model, &pieces, &eta)) {
+        if problem.bounds.hold(&problem.coordinates.file_values(&eta)) {
             break;
         }
         problem.weight = weight;
-        let (next, more) = problem.search(&pieces, &eta, &first);
+        let (next, more) = problem.search(&eta);
         (eta, steps) = (next, steps + more);
     }
-    let (theta, _) = standard(model, &pieces, &eta);
+    let (theta, _) = problem.coordinates.standard(&eta);
     let residual = &problem.target - &problem.jacobian * &theta;
     let standard = theta.as_slice().to_vec();
     let phi = model.axes_of_standard(&standard);
-    let own = own_values(model, &pieces, &eta);
+    let own = problem.coordinates.own_values(&eta);
     let distance = (residual.norm_squared() / rank.max(1) as f64).sqrt();
     Consistent { standard, phi, distance, own, steps }
 }
 
 struct Problem<'a> {
-    model: &'a RegressionModel,
     /// Of theta0.
     jacobian: DMatrix<f64>,
     target: DVector<f64>,
     bounds: Bounds<'a>,
     /// Of what entries of bodies fall short of.
     weight: f64,
+    coordinates: Coordinates<'a>,
+    /// Those of the model before, near which what nothing is said about stays.
+    first: DVector<f64>,
 }
 
 impl Problem<'_> {
-    fn cost(&self, pieces: &[Piece], eta: &DVector<f64>, first: &DVector<f64>) -> f64 {
-        let (theta, _) = standard(self.model, pieces, eta);
+    fn cost(&self, eta: &DVector<f64>) -> f64 {
+        let (theta, _) = self.coordinates.standard(eta);
         let residual = &self.target - &self.jacobian * theta;
-        let short = self.short(pieces, eta).norm_squared();
-        residual.norm_squared() + short + STAY * (eta - first).norm_squared()
+        let short = self.short(eta).norm_squared();
+        residual.norm_squared() + short + STAY * (eta - &self.first).norm_squared()
     }
 
     /// What entries of bodies fall short of, weighted.
-    fn short(&self, pieces: &[Piece], eta: &DVector<f64>) -> DVector<f64> {
+    fn short(&self, eta: &DVector<f64>) -> DVector<f64> {
         if self.weight == 0.0 {
             return DVector::zeros(0);
         }
-        let short = self.bounds.short(&file_values(self.model, pieces, eta));
+        let short = self.bounds.short(&self.coordinates.file_values(eta));
         DVector::from_vec(short) * self.weight
     }
 
     /// All residuals, and how they fall with the coordinates.
-    fn rows(&self, pieces: &[Piece], eta: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
-        let (theta, slope) = standard(self.model, pieces, eta);
+    fn rows(&self, eta: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let (theta, slope) = self.coordinates.standard(eta);
         let j = &self.jacobian * slope;
         let residual = &self.target - &self.jacobian * &theta;
         if self.weight == 0.0 {
@@ -133,38 +130,30 @@ impl Problem<'_> {
         }
         let (rows, bounded) = (residual.len(), self.bounds.count());
         let mut all = residual.resize_vertically(rows + bounded, 0.0);
-        all.rows_mut(rows, bounded).copy_from(&self.short(pieces, eta));
+        all.rows_mut(rows, bounded).copy_from(&self.short(eta));
         let mut j = j.resize_vertically(rows + bounded, 0.0);
-        let mut at = 0;
-        for piece in pieces {
-            if let Piece::Own(_) = piece {
-                let step = 1e-5 * eta[at].abs().max(1e-2);
-                let moved = |by: f64| {
-                    let mut moved = eta.clone();
-                    moved[at] += by;
-                    self.short(pieces, &moved)
-                };
-                let fall = (moved(-step) - moved(step)) / (2.0 * step);
-                j.view_mut((rows, at), (bounded, 1)).copy_from(&fall);
-            }
-            at += piece.len();
+        for (at, _) in self.coordinates.own() {
+            let step = 1e-5 * eta[at].abs().max(1e-2);
+            let moved = |by: f64| {
+                let mut moved = eta.clone();
+                moved[at] += by;
+                self.short(&moved)
+            };
+            let fall = (moved(-step) - moved(step)) / (2.0 * step);
+            j.view_mut((rows, at), (bounded, 1)).copy_from(&fall);
         }
         (all, j)
     }
 
-    /// The nearest coordinates to targets on the way from `first` to the target, one after the
-    /// other, and the steps that were made.
-    fn search_in_stages(
-        &mut self,
-        pieces: &[Piece],
-        first: &DVector<f64>,
-    ) -> (DVector<f64>, usize) {
+    /// The nearest coordinates to targets on the way from those of before to the target, one after
+    /// the other, and the steps that were made.
+    fn search_in_stages(&mut self) -> (DVector<f64>, usize) {
         let last = self.target.clone();
-        let begin = &self.jacobian * standard(self.model, pieces, first).0;
-        let (mut eta, mut steps) = (first.clone(), 0);
+        let begin = &self.jacobian * self.coordinates.standard(&self.first).0;
+        let (mut eta, mut steps) = (self.first.clone(), 0);
         for stage in 1..=STAGES {
             self.target = &begin + (&last - &begin) * (stage as f64 / STAGES as f64);
-            let (next, more) = self.search(pieces, &eta, first);
+            let (next, more) = self.search(&eta);
             (eta, steps) = (next, steps + more);
         }
         self.target = last;
@@ -172,25 +161,20 @@ impl Problem<'_> {
     }
 
     /// The nearest coordinates from `eta` on, and the steps that were made (Levenberg, Marquardt).
-    fn search(
-        &self,
-        pieces: &[Piece],
-        eta: &DVector<f64>,
-        first: &DVector<f64>,
-    ) -> (DVector<f64>, usize) {
+    fn search(&self, eta: &DVector<f64>) -> (DVector<f64>, usize) {
         let mut eta = eta.clone();
         let mut damping = 1e-3;
         let mut steps = 0;
-        let mut cost = self.cost(pieces, &eta, first);
+        let mut cost = self.cost(&eta);
         while steps < MAX_STEPS {
             steps += 1;
-            let (residual, j) = self.rows(pieces, &eta);
-            let next = damped(&j, &residual, &(first - &eta), damping).map(|step| {
+            let (residual, j) = self.rows(&eta);
+            let next = damped(&j, &residual, &(&self.first - &eta), damping).map(|step| {
                 let longest = step.amax();
                 let limited = if longest > 2.0 { step * (2.0 / longest) } else { step };
                 &eta + limited
             });
-            let better = next.map(|next| (self.cost(pieces, &next, first), next));
+            let better = next.map(|next| (self.cost(&next), next));
             match better.filter(|(there, _)| *there < cost) {
                 Some((there, next)) => {
                     let gain = cost - there;
@@ -230,43 +214,12 @@ fn damped(
     qr.r().solve_upper_triangular(&right)
 }
 
-/// The numbers of the file: those that coordinates stand for, and the others as they were.
-fn file_values(model: &RegressionModel, pieces: &[Piece], eta: &DVector<f64>) -> Vec<f64> {
-    let mut values: Vec<f64> = model.parameters.iter().map(|one| one.value).collect();
-    for (place, value) in own_values(model, pieces, eta) {
-        values[place] = value;
-    }
-    values
-}
-
 /// The deviation of a weighted row: from the residual, or from rounding where there is none.
 fn noise_scale(r: &DMatrix<f64>, target: &DVector<f64>, rank: usize) -> f64 {
     let left = if r.nrows() > rank { r[(rank, rank)].abs() } else { 0.0 };
     let floor = 1e-9 * target.norm();
     // Weighted rows have a deviation near 1, whatever their number is.
     if left > floor { 1.0 } else { floor.max(f64::MIN_POSITIVE) }
-}
-
-fn pieces(model: &RegressionModel) -> Vec<Piece> {
-    let mut pieces = Vec::new();
-    let mut place = 0;
-    while let Some(parameter) = model.standard.get(place) {
-        match &parameter.owner {
-            // The ten parameters of a body stand beside each other.
-            Some((_, "m")) => {
-                pieces.push(Piece::Body(place));
-                place += 9;
-            }
-            Some((_, "fv" | "fc" | "Ia")) => pieces.push(Piece::NotNegative(place)),
-            Some(_) => pieces.push(Piece::Free(place)),
-            None => {}
-        }
-        place += 1;
-    }
-    let has_own = model.standard.iter().any(|one| one.owner.is_none());
-    let is_own = |place: &usize| has_own && !is_owned(model, *place);
-    pieces.extend((0..model.parameters.len()).filter(is_own).map(Piece::Own));
-    pieces
 }
 
 /// Whether a number of the file has columns of its own, or goes into those of its link.
@@ -279,21 +232,6 @@ fn is_owned(model: &RegressionModel, place: usize) -> bool {
         let is_of_link = parameter.link.as_ref() == Some(link);
         is_of_link && (body && *own == "m" || *own == prefix)
     })
-}
-
-/// The numbers of the file that coordinates stand for.
-fn own_values(model: &RegressionModel, pieces: &[Piece], eta: &DVector<f64>) -> Vec<(usize, f64)> {
-    let mut at = 0;
-    let mut values = Vec::new();
-    for piece in pieces {
-        if let Piece::Own(place) = *piece {
-            let is_positive = model.parameters[place].is_positive;
-            let least = LEAST_OF * model.parameters[place].value.abs();
-            values.push((place, if is_positive { eta[at] * eta[at] + least } else { eta[at] }));
-        }
-        at += piece.len();
-    }
-    values
 }
 
 /// The pseudo-inertia [[integral of x x^T dm, integral of x dm], [.., m]] of ten parameters.
@@ -346,31 +284,6 @@ fn lower(eta: &[f64]) -> Matrix4<f64> {
     l
 }
 
-/// Coordinates of given parameters, moved into the bodies that exist.
-fn coordinates(model: &RegressionModel, pieces: &[Piece], start: &[f64]) -> DVector<f64> {
-    let mut eta = Vec::new();
-    for piece in pieces {
-        match *piece {
-            Piece::NotNegative(place) => eta.push(start[place].max(1e-8).sqrt()),
-            Piece::Free(place) => eta.push(start[place]),
-            Piece::Own(place) => {
-                let own = &model.parameters[place];
-                let start = own.value;
-                let above = (1.0 - LEAST_OF) * start;
-                eta.push(if own.is_positive { above.max(1e-5).sqrt() } else { start });
-            }
-            Piece::Body(place) => {
-                let l = cholesky_of_near(&pseudo_inertia(&start[place..place + 10]));
-                eta.extend((0..4).map(|row| l[(row, row)].ln()));
-                for row in 0..4 {
-                    eta.extend((0..row).map(|column| l[(row, column)]));
-                }
-            }
-        }
-    }
-    DVector::from_vec(eta)
-}
-
 /// The Cholesky factor of a pseudo-inertia, its eigenvalues raised where they are too small.
 fn cholesky_of_near(j: &Matrix4<f64>) -> Matrix4<f64> {
     // A body that is nothing yet: 10 g of the size of a fist.
@@ -388,75 +301,150 @@ fn cholesky_of_near(j: &Matrix4<f64>) -> Matrix4<f64> {
     raised.cholesky().map_or_else(|| cholesky_of_near(&nothing), |cholesky| cholesky.l())
 }
 
-/// theta0 of coordinates, and its derivative.
-fn standard(
-    model: &RegressionModel,
-    pieces: &[Piece],
-    eta: &DVector<f64>,
-) -> (DVector<f64>, DMatrix<f64>) {
-    let size = model.standard.len();
-    let mut theta = DVector::zeros(size);
-    let mut slope = DMatrix::zeros(size, eta.len());
-    products(model, pieces, eta, &mut theta, &mut slope);
-    let mut at = 0;
-    for piece in pieces {
-        match *piece {
-            Piece::Own(_) => {}
-            Piece::Free(place) => {
-                theta[place] = eta[at];
-                slope[(place, at)] = 1.0;
+/// What coordinates stand for, each piece after the place of its first one.
+struct Coordinates<'a> {
+    model: &'a RegressionModel,
+    pieces: Vec<(usize, Piece)>,
+    count: usize,
+}
+
+impl<'a> Coordinates<'a> {
+    fn of(model: &'a RegressionModel) -> Self {
+        let mut coordinates = Self { model, pieces: Vec::new(), count: 0 };
+        let mut place = 0;
+        while let Some(parameter) = model.standard.get(place) {
+            match &parameter.owner {
+                // The ten parameters of a body stand beside each other.
+                Some((_, "m")) => {
+                    coordinates.push(Piece::Body(place), 10);
+                    place += 9;
+                }
+                Some((_, "fv" | "fc" | "Ia")) => coordinates.push(Piece::NotNegative(place), 1),
+                Some(_) => coordinates.push(Piece::Free(place), 1),
+                None => {}
             }
-            Piece::NotNegative(place) => {
-                theta[place] = eta[at] * eta[at];
-                slope[(place, at)] = 2.0 * eta[at];
-            }
-            Piece::Body(place) => {
-                let l = lower(&eta.as_slice()[at..at + 10]);
-                let own = ten_parameters(&(l * l.transpose()));
-                theta.rows_mut(place, 10).copy_from_slice(&own);
-                let mut next = 4;
-                for row in 0..4 {
-                    for column in 0..=row {
-                        // d(L L^T) = dL L^T + L dL^T
-                        let mut change = Matrix4::zeros();
-                        let is_diagonal = row == column;
-                        change[(row, column)] = if is_diagonal { l[(row, row)] } else { 1.0 };
-                        let moved = change * l.transpose() + l * change.transpose();
-                        let coordinate = if is_diagonal { row } else { next };
-                        next += usize::from(!is_diagonal);
-                        let moved = ten_parameters(&moved);
-                        slope.view_mut((place, at + coordinate), (10, 1)).copy_from_slice(&moved);
+            place += 1;
+        }
+        let has_own = model.standard.iter().any(|one| one.owner.is_none());
+        for place in (0..model.parameters.len()).filter(|place| has_own && !is_owned(model, *place))
+        {
+            coordinates.push(Piece::Own(place), 1);
+        }
+        coordinates
+    }
+
+    fn push(&mut self, piece: Piece, count: usize) {
+        self.pieces.push((self.count, piece));
+        self.count += count;
+    }
+
+    /// The coordinates that stand for numbers of the file, with the places of these.
+    fn own(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.pieces.iter().filter_map(|(at, piece)| match *piece {
+            Piece::Own(place) => Some((*at, place)),
+            _ => None,
+        })
+    }
+
+    /// The numbers of the file that coordinates stand for.
+    fn own_values(&self, eta: &DVector<f64>) -> Vec<(usize, f64)> {
+        let value = |(at, place): (usize, usize)| {
+            let is_positive = self.model.parameters[place].is_positive;
+            let least = LEAST_OF * self.model.parameters[place].value.abs();
+            (place, if is_positive { eta[at] * eta[at] + least } else { eta[at] })
+        };
+        self.own().map(value).collect()
+    }
+
+    /// The numbers of the file: those that coordinates stand for, and the others as they were.
+    fn file_values(&self, eta: &DVector<f64>) -> Vec<f64> {
+        let mut values: Vec<f64> = self.model.parameters.iter().map(|one| one.value).collect();
+        for (place, value) in self.own_values(eta) {
+            values[place] = value;
+        }
+        values
+    }
+
+    /// Coordinates of given parameters, moved into the bodies that exist.
+    fn of_start(&self, start: &[f64]) -> DVector<f64> {
+        let mut eta = Vec::new();
+        for (_, piece) in &self.pieces {
+            match *piece {
+                Piece::NotNegative(place) => eta.push(start[place].max(1e-8).sqrt()),
+                Piece::Free(place) => eta.push(start[place]),
+                Piece::Own(place) => {
+                    let own = &self.model.parameters[place];
+                    let above = (1.0 - LEAST_OF) * own.value;
+                    eta.push(if own.is_positive { above.max(1e-5).sqrt() } else { own.value });
+                }
+                Piece::Body(place) => {
+                    let l = cholesky_of_near(&pseudo_inertia(&start[place..place + 10]));
+                    eta.extend((0..4).map(|row| l[(row, row)].ln()));
+                    for row in 0..4 {
+                        eta.extend((0..row).map(|column| l[(row, column)]));
                     }
                 }
             }
         }
-        at += piece.len();
+        DVector::from_vec(eta)
     }
-    (theta, slope)
-}
 
-/// Columns that are products of the model's own numbers, with their derivatives: polynomials of low
-/// degree, whose central differences are nearly exact.
-fn products(
-    model: &RegressionModel,
-    pieces: &[Piece],
-    eta: &DVector<f64>,
-    theta: &mut DVector<f64>,
-    slope: &mut DMatrix<f64>,
-) {
-    let own = own_values(model, pieces, eta);
-    if own.is_empty() {
-        return;
+    /// theta0 of coordinates, and its derivative.
+    fn standard(&self, eta: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let size = self.model.standard.len();
+        let mut theta = DVector::zeros(size);
+        let mut slope = DMatrix::zeros(size, eta.len());
+        self.products(eta, &mut theta, &mut slope);
+        for (at, piece) in &self.pieces {
+            let at = *at;
+            match *piece {
+                Piece::Own(_) => {}
+                Piece::Free(place) => {
+                    theta[place] = eta[at];
+                    slope[(place, at)] = 1.0;
+                }
+                Piece::NotNegative(place) => {
+                    theta[place] = eta[at] * eta[at];
+                    slope[(place, at)] = 2.0 * eta[at];
+                }
+                Piece::Body(place) => {
+                    let l = lower(&eta.as_slice()[at..at + 10]);
+                    let own = ten_parameters(&(l * l.transpose()));
+                    theta.rows_mut(place, 10).copy_from_slice(&own);
+                    let mut next = 4;
+                    for row in 0..4 {
+                        for column in 0..=row {
+                            // d(L L^T) = dL L^T + L dL^T
+                            let mut change = Matrix4::zeros();
+                            let is_diagonal = row == column;
+                            change[(row, column)] = if is_diagonal { l[(row, row)] } else { 1.0 };
+                            let moved = change * l.transpose() + l * change.transpose();
+                            let coordinate = if is_diagonal { row } else { next };
+                            next += usize::from(!is_diagonal);
+                            let moved = ten_parameters(&moved);
+                            let mut column = slope.view_mut((place, at + coordinate), (10, 1));
+                            column.copy_from_slice(&moved);
+                        }
+                    }
+                }
+            }
+        }
+        (theta, slope)
     }
-    let mut values = file_values(model, pieces, eta);
-    let is_product: Vec<bool> = model.standard.iter().map(|one| one.owner.is_none()).collect();
-    let here = model.standard_values(&values);
-    for (row, value) in here.iter().enumerate().filter(|(row, _)| is_product[*row]) {
-        theta[row] = *value;
-    }
-    let mut at = 0;
-    for piece in pieces {
-        if let Piece::Own(place) = *piece {
+
+    /// Columns that are products of the model's own numbers, with their derivatives: polynomials of
+    /// low degree, whose central differences are nearly exact.
+    fn products(&self, eta: &DVector<f64>, theta: &mut DVector<f64>, slope: &mut DMatrix<f64>) {
+        if self.own().next().is_none() {
+            return;
+        }
+        let model = self.model;
+        let mut values = self.file_values(eta);
+        let products: Vec<usize> =
+            (0..theta.len()).filter(|&row| model.standard[row].owner.is_none()).collect();
+        let here = model.standard_values(&values);
+        products.iter().for_each(|&row| theta[row] = here[row]);
+        for (at, place) in self.own() {
             let value = values[place];
             let step = 1e-4 * value.abs().max(1e-2);
             values[place] = value + step;
@@ -465,10 +453,9 @@ fn products(
             let below = model.standard_values(&values);
             values[place] = value;
             let inner = if model.parameters[place].is_positive { 2.0 * eta[at] } else { 1.0 };
-            for row in (0..is_product.len()).filter(|&row| is_product[row]) {
+            for &row in &products {
                 slope[(row, at)] = inner * (above[row] - below[row]) / (2.0 * step);
             }
         }
-        at += piece.len();
     }
 }

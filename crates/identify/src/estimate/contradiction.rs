@@ -9,7 +9,7 @@ use super::condensed::Condensed;
 use super::least_squares::{Estimate, Fit, Method, Options};
 use super::left_out::{LeftOut, NumberedLog};
 use super::noise_bias::noise_squares;
-use super::own_estimate::{Own, Tested, of_joint, spread};
+use super::own_estimate::{Own, Tested, spread};
 use super::rows::BlockMaker;
 use super::triangle::Triangle;
 use super::unexplained::ShownLogs;
@@ -215,7 +215,7 @@ impl Claim<'_> {
         let of = |(joint, triangle): (usize, &Triangle)| {
             let rows = triangle.rows() as f64;
             let all = triangle.target_squares();
-            let left = triangle.squares(&of_joint(&pattern[joint], phi.as_slice()));
+            let left = triangle.squares(&model.of_joint(joint, phi.as_slice()));
             let unsure = spread(triangle, &pattern[joint], covariance);
             let constant = one.constant(left, JointIndex(joint), phi.as_slice(), self.means[joint]);
             let constant = signs[joint].then_some(constant);

@@ -2,6 +2,7 @@
 
 use super::condensed::Condensed;
 use super::solve::{PriorRow, Solution, solve};
+use super::triangle::Triangle;
 use crate::policy::errors::{MOST_ALIKE, MOST_LEVERAGE, NEIGHBOURS, ONE_OF_TWENTY};
 use denavit_measure::{JointIndex, LogIndex, PartIndex};
 use denavit_numerics::Random;
@@ -49,8 +50,7 @@ impl Problem<'_> {
 
     /// Rows beyond those that the estimate takes.
     pub(super) fn free_rows(&self) -> f64 {
-        let rows: usize =
-            self.condensed.parts.iter().flatten().map(super::triangle::Triangle::rows).sum();
+        let rows: usize = self.condensed.parts.iter().flatten().map(Triangle::rows).sum();
         (rows as f64 - self.solution.excited() as f64).max(1.0)
     }
 
@@ -69,13 +69,9 @@ impl Problem<'_> {
         }
         let follows = &self.solution.factor * (sums * &self.solution.factor).transpose();
         let mut moments = vec![[0.0; 2]; sums.nrows()];
-        for (part, triangles) in self.condensed.parts.iter().enumerate() {
-            let weights = &self.weights[self.condensed.log_of_part[part].0];
+        for part in 0..self.condensed.parts.len() {
             let mut decides = vec![0.0; sums.nrows()];
-            for (joint, triangle) in triangles.iter().enumerate() {
-                let pattern = &self.condensed.pattern[joint];
-                let r = triangle.matrix().view((0, 0), (pattern.len(), pattern.len()));
-                let rows = weights[joint] * (r * follows.select_rows(pattern));
+            for rows in self.weighted(PartIndex(part), &follows) {
                 for (decides, column) in decides.iter_mut().zip(rows.column_iter()) {
                     *decides += column.norm_squared();
                 }
@@ -89,6 +85,21 @@ impl Problem<'_> {
             |[sum, squares]: [f64; 2]| if squares > 0.0 { sum * sum / squares } else { 0.0 };
         let degrees = moments.into_iter().map(|both| (parts_alike(both) / neighbours).max(1.0));
         DVector::from_iterator(sums.nrows(), degrees)
+    }
+
+    /// W of a part, weighted, times a matrix: for each joint its rows.
+    fn weighted<'b>(
+        &'b self,
+        part: PartIndex,
+        by: &'b DMatrix<f64>,
+    ) -> impl Iterator<Item = DMatrix<f64>> + 'b {
+        let weights = &self.weights[self.condensed.log_of_part[part.0].0];
+        let of = move |(joint, triangle): (usize, &Triangle)| {
+            let pattern = &self.condensed.pattern[joint];
+            let r = triangle.matrix().view((0, 0), (pattern.len(), pattern.len()));
+            weights[joint] * (r * by.select_rows(pattern))
+        };
+        self.condensed.parts[part.0].iter().enumerate().map(of)
     }
 
     /// F F^T S F F^T with S the long-run covariance of the scores.
@@ -122,12 +133,7 @@ impl Problem<'_> {
             return score;
         }
         let mut leverage = DMatrix::zeros(size, size);
-        let weights = &self.weights[self.condensed.log_of_part[part.0].0];
-        for (joint, triangle) in self.condensed.parts[part.0].iter().enumerate() {
-            let pattern = &self.condensed.pattern[joint];
-            let own = DMatrix::from_fn(pattern.len(), size, |at, c| factor[(pattern[at], c)]);
-            let r = triangle.matrix().view((0, 0), (pattern.len(), pattern.len()));
-            let rows = weights[joint] * (r * own);
+        for rows in self.weighted(part, factor) {
             leverage += rows.tr_mul(&rows);
         }
         if leverage.iter().any(|entry| !entry.is_finite()) {
@@ -227,7 +233,6 @@ pub fn interval_factor(degrees_of_freedom: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::triangle::Triangle;
     use super::*;
 
     /// Sums over 64 parts of a process of first order, whose variance is known: white, and one

@@ -27,10 +27,8 @@ pub(crate) fn filter_errors(
     let again: Vec<Conditioned> =
         logs.iter().filter_map(|log| filtered_again(model, log, longest, &smooth)).collect();
     let left = validate(model, &smooth, &again);
-    let of_joint = |joint: &RegressionJoint| {
-        let found = left.joints.iter().find(|one| one.name == joint.name);
-        found.map_or(0.0, |one| one.relative)
-    };
+    let of_joint =
+        |joint: &RegressionJoint| left.joint(&joint.name).map_or(0.0, |one| one.relative);
     model.joints.iter().map(of_joint).collect()
 }
 

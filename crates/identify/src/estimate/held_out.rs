@@ -12,7 +12,7 @@ use super::filter_error::filter_errors;
 use super::least_squares::{Estimate, Options};
 use super::left_out::{LeftOut, NumberedLog};
 use super::noise_bias::noise_squares;
-use super::own_estimate::{Tested, of_joint, spread};
+use super::own_estimate::{Tested, spread};
 use super::triangle::Triangle;
 use super::unexplained::{Unexplained, moves};
 use crate::policy::held_out::{MANY, OF_BAND, OF_NOISE, OF_TORQUE};
@@ -110,18 +110,16 @@ impl<'a> HeldOut<'a> {
             moves && !is_noise[joint] && is_much(&(torque, left, known + made[joint]))
         };
         let unexplained = |joint: usize| Unexplained {
-            joint: model.joints[joint].name.clone(),
             file: Some(logs[at.0].file.clone()),
-            share: (all[joint].1 / all[joint].0).sqrt(),
-            rest_s: None,
             beside: Some(counted[joint]),
+            ..Unexplained::of(&model.joints[joint].name, (all[joint].1 / all[joint].0).sqrt())
         };
         (0..model.joints.len()).filter(is_told).map(unexplained).collect()
     }
 
     /// The mean square of what phi leaves of a joint's torque.
     fn left(&self, triangle: &Triangle, joint: usize, phi: &DVector<f64>) -> f64 {
-        let phi = of_joint(&self.model.pattern()[joint], phi.as_slice());
+        let phi = self.model.of_joint(joint, phi.as_slice());
         triangle.squares(&phi) / triangle.rows().max(1) as f64
     }
 

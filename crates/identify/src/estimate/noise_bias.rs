@@ -69,9 +69,8 @@ pub(super) fn noise_bias(
         Noise::of_log(model, own, left_out, weights, longest, factors, &mut random)
     };
     let of_joints: Vec<Vec<DMatrix<f64>>> = logs.iter().enumerate().map(of_log).collect();
-    let of_logs: Vec<Noise> = of_joints.iter().map(|one| Noise::of_joints(one)).collect();
-    let mut all = Noise::new(model.rank());
-    of_logs.iter().for_each(|one| all.0 += &one.0);
+    let of_logs: Vec<Noise> = of_joints.iter().map(|one| Noise(one.iter().sum())).collect();
+    let all = Noise(of_logs.iter().map(|one| &one.0).sum());
     let solution = &found.solution;
     let (bias, phi) = all.bias(solution, given);
     let triangles = found.condensed.whole();
@@ -101,7 +100,8 @@ pub(super) fn bias_of_some<'a>(
     solution: &Solution,
     given: &[f64],
 ) -> DVector<f64> {
-    let mut all = Noise::new(solution.phi.len());
+    let rank = solution.phi.len();
+    let mut all = Noise(DMatrix::zeros(rank, rank + 1));
     for (one, times) in noise {
         one.of_joints.iter().zip(times).for_each(|(own, times)| all.0 += own * times);
     }
@@ -208,14 +208,6 @@ fn with_noise(
 struct Noise(DMatrix<f64>);
 
 impl Noise {
-    fn new(rank: usize) -> Self {
-        Self(DMatrix::zeros(rank, rank + 1))
-    }
-
-    fn of_joints(of_joints: &[DMatrix<f64>]) -> Self {
-        Self(of_joints.iter().sum())
-    }
-
     /// That of each joint of a log, of which so many samples are looked at before decimation.
     fn of_log(
         model: &RegressionModel,
@@ -227,7 +219,8 @@ impl Noise {
         random: &mut Random,
     ) -> Vec<DMatrix<f64>> {
         let NumberedLog { number, log } = own;
-        let mut noise = vec![Self::new(model.rank()).0; model.joints.len()];
+        let rank = model.rank();
+        let mut noise = vec![DMatrix::zeros(rank, rank + 1); model.joints.len()];
         if log.position_noise.iter().all(|noise| *noise == 0.0) {
             return noise;
         }

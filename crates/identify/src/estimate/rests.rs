@@ -43,7 +43,7 @@ impl LeftOut {
         let mut sums = vec![[0.0; 3]; rests.len()];
         let mut maker = BlockMaker::resting(model, own.log, &rests);
         for (joint, (rests, sums)) in rests.iter().zip(&mut sums).enumerate() {
-            let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| values[at]).collect();
+            let own = model.of_joint(joint, values);
             for rest in rests {
                 maker.for_each_of(rest.clone(), |block| {
                     let Some(left) = block.residual(JointIndex(joint), &own) else { return };

@@ -88,13 +88,6 @@ impl Triangle {
         self.rows += other.rows;
     }
 
-    /// Turns y round.
-    pub fn negate_target(&mut self) {
-        let last = self.width();
-        self.r.column_mut(last).neg_mut();
-        self.sums[last] = -self.sums[last];
-    }
-
     /// |W phi - y|^2.
     pub fn squares(&self, phi: &[f64]) -> f64 {
         let residual = self.residual(phi);

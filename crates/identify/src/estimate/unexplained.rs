@@ -67,6 +67,13 @@ pub struct Unexplained {
     pub beside: Option<f64>,
 }
 
+impl Unexplained {
+    /// A joint that moves, of whose torque this share is left in all logs.
+    pub(crate) fn of(joint: &str, share: f64) -> Self {
+        Self { joint: joint.to_owned(), file: None, share, rest_s: None, beside: None }
+    }
+}
+
 /// Logs, of some of which noise makes most.
 #[derive(Clone, Copy)]
 pub struct ShownLogs<'a> {
@@ -126,17 +133,11 @@ fn moving(
 ) -> Vec<Unexplained> {
     let lag = logs.iter().map(|log| samples_of(log, 0.5)).max().unwrap_or(1);
     let of = |(((joint, moves), counted), noise): (((&RegressionJoint, bool), &f64), &f64)| {
-        let found = judged.left.joints.iter().find(|one| one.name == joint.name)?;
+        let found = judged.left.joint(&joint.name)?;
         let is_alike = found.autocorrelation.get(lag - 1).is_some_and(|one| *one > ALIKE);
         let least = if is_alike && *counted > LEFT_ALIKE { LEFT_ALIKE } else { *noise };
         let is_left = !joint.is_base && moves && found.relative > least;
-        is_left.then(|| Unexplained {
-            joint: joint.name.clone(),
-            file: None,
-            share: found.relative,
-            rest_s: None,
-            beside: None,
-        })
+        is_left.then(|| Unexplained::of(&joint.name, found.relative))
     };
     let moving = moves(model, logs);
     model.joints.iter().zip(moving).zip(judged.counted).zip(noise).filter_map(of).collect()
@@ -164,16 +165,12 @@ fn resting(
     let first_s = log.start_s + log.step_s * log.range.start as f64;
     let of = |(joint, own): (usize, RestingJoint)| {
         let name = &model.joints[joint].name;
-        let torque = left.joints.iter().find(|one| one.name == *name)?.torque_rms;
+        let torque = left.joint(name)?.torque_rms;
         let share = own.unexplained(samples_of(log, 1.0))?.sqrt() / torque;
         let spell = longest(&rests[joint]);
-        (share > LEFT_AT_REST).then(|| Unexplained {
-            joint: name.clone(),
-            file: None,
-            share,
-            rest_s: Some([spell.start, spell.end].map(|at| first_s + log.step_s * at as f64)),
-            beside: None,
-        })
+        let rest_s = [spell.start, spell.end].map(|at| first_s + log.step_s * at as f64);
+        let told = Unexplained { rest_s: Some(rest_s), ..Unexplained::of(name, share) };
+        (share > LEFT_AT_REST).then_some(told)
     };
     at_rest(model, log, found, &rests).into_iter().enumerate().filter_map(of).collect()
 }

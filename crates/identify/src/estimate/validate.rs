@@ -131,6 +131,11 @@ pub fn validate(
 }
 
 impl Validation {
+    /// What is left of a joint's torque; none where none was measured.
+    pub fn joint(&self, name: &str) -> Option<&JointResidual> {
+        self.joints.iter().find(|one| one.name == name)
+    }
+
     /// Of so many samples, of the joints whose torque was measured.
     pub(super) fn of_joints(joints: Vec<JointResidual>, samples: usize) -> Self {
         // a sum of nothing is -0, which would be shown

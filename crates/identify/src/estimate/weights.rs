@@ -128,16 +128,19 @@ impl Condensed {
 
     /// Rows, as many as count like those of the log whose rows are independent most.
     pub(super) fn counted_rows(&self) -> f64 {
-        let counts = self.of_rows_alike();
-        let rows = |part: usize| self.parts[part].iter().map(Triangle::rows).sum::<usize>() as f64;
-        (0..self.parts.len()).map(|part| counts[self.log_of_part[part].0] * rows(part)).sum()
+        self.rows_by(&self.of_rows_alike())
     }
 
     /// Rows that are independent of each other.
     pub(super) fn independent_rows(&self) -> f64 {
-        let rows = |part: usize| self.parts[part].iter().map(Triangle::rows).sum::<usize>() as f64;
-        let of_part = |part: usize| self.independent[self.log_of_part[part].0] * rows(part);
-        (0..self.parts.len()).map(of_part).sum()
+        self.rows_by(&self.independent)
+    }
+
+    /// Rows, those of each log counted so.
+    fn rows_by(&self, counts: &[f64]) -> f64 {
+        let rows = |part: &Vec<Triangle>| part.iter().map(Triangle::rows).sum::<usize>() as f64;
+        let both = self.parts.iter().zip(&self.log_of_part);
+        both.map(|(part, log)| counts[log.0] * rows(part)).sum()
     }
 
     /// Weights to begin with: all alike, or torques of one size, whatever their units.

@@ -130,10 +130,7 @@ fn write_residuals(out: &mut String, shown: &Identified) -> fmt::Result {
         ("residual", Align::Right),
         ("correlation", Align::Right),
     ]);
-    let held_out = |joint: &JointResidual| {
-        let joints = &found.validate.as_ref()?.joints;
-        joints.iter().find(|other| other.name == joint.name)
-    };
+    let held_out = |joint: &JointResidual| found.validate.as_ref()?.joint(&joint.name);
     let percent = |share: f64| format!("{:.2} %", 100.0 * share);
     for joint in &found.train.joints {
         let other = held_out(joint);

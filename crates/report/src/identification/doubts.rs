@@ -3,7 +3,7 @@
 use denavit_identify::estimate::{
     ContradictingJoint, ContradictingLog, IdentifiedParameter, Likeness, Standing, Unexplained,
 };
-use denavit_identify::{Added, Identification, LeftOutRows, NoisyLog};
+use denavit_identify::{Identification, LeftOutRows, NoisyLog};
 
 /// Parameters that are named, at most.
 const LISTED: usize = 6;
@@ -221,18 +221,11 @@ fn unexplained(one: &Unexplained) -> String {
 
 /// A log of which noise makes most, beside others.
 fn noisy_log(one: &NoisyLog) -> String {
-    let NoisyLog { file, share, adds } = one;
-    let adds = match adds {
-        Added::Certainty(share) => {
-            format!("no standard error would be more than {:.2} times as large.", 1.0 + share)
-        }
-        Added::Sums(1) => "one sum of parameters would not be shown.".to_owned(),
-        Added::Sums(sums) => format!("{sums} sums of parameters would not be shown."),
-    };
     format!(
-        "Noise of the positions makes up to {:.0} % of what {file} shows of the parameters by \
-         itself. Its rows count as little as that noise says: without it {adds}",
-        100.0 * share
+        "Noise of the positions makes up to {:.0} % of what {} shows of the parameters by itself. \
+         Its rows count as little as that noise says.",
+        100.0 * one.share,
+        one.file
     )
 }
 

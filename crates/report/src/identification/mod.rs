@@ -16,7 +16,7 @@ use super::html::{
 use super::short;
 use curves::{condition, convergence};
 use denavit_codegen::model::Robot;
-use denavit_identify::estimate::{JointResidual, Status, Validation};
+use denavit_identify::estimate::{Status, Validation};
 use denavit_identify::forward::Forward;
 use denavit_identify::{Identification, UpdatedModel};
 use denavit_plants::regression::RegressionModel;
@@ -193,7 +193,7 @@ pub(super) fn residuals(train: &Validation, held_out: Option<&Validation>) -> Se
         ("correlation with the next sample", true),
     ]);
     let rows = train.joints.iter().map(|joint| {
-        let other = held_out.and_then(|all| find(all, &joint.name));
+        let other = held_out.and_then(|all| all.joint(&joint.name));
         let number = |value: f64| Cell::number(value, short(value));
         let next = joint.autocorrelation.first().copied().unwrap_or(0.0);
         let cells = vec![
@@ -238,10 +238,6 @@ pub(super) fn headings(list: &[(&str, bool)]) -> Vec<Heading> {
     let heading =
         |&(text, is_number): &(&str, bool)| Heading { heading: text.to_owned(), is_number };
     list.iter().map(heading).collect()
-}
-
-fn find<'a>(validation: &'a Validation, joint: &str) -> Option<&'a JointResidual> {
-    validation.joints.iter().find(|other| other.name == joint)
 }
 
 pub(super) fn percent(share: f64) -> String {

@@ -186,7 +186,7 @@ impl LongRows {
     ) -> Validation {
         let one = |(at, joint): (usize, &RegressionJoint)| {
             let rows = self.all[at].rows();
-            let of_head = head.joints.iter().find(|one| one.name == joint.name);
+            let of_head = head.joint(&joint.name);
             let rms = |squares: f64| (squares / rows as f64).sqrt();
             let own = self.condensed.of_joint(JointIndex(at), phi);
             let residual_rms = rms(self.all[at].squares(&own));

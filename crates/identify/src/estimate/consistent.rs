@@ -29,8 +29,6 @@ pub struct Consistent {
     /// Values of the model's own numbers, where columns are products of them: their places in
     /// [`RegressionModel::parameters`].
     pub own: Vec<(usize, f64)>,
-    /// Steps that were made.
-    pub steps: usize,
 }
 
 /// What coordinates stand for.
@@ -67,11 +65,10 @@ pub fn consistent(model: &RegressionModel, found: &Estimate, start: &[f64]) -> C
         coordinates,
         first,
     };
-    let (mut eta, mut steps) = problem.search(&problem.first);
+    let mut eta = problem.search(&problem.first);
     let cost = problem.cost(&eta);
     if cost > FAR.powi(2) * rank as f64 {
-        let (next, more) = problem.search_in_stages();
-        steps += more;
+        let next = problem.search_in_stages();
         eta = if problem.cost(&next) < cost { next } else { eta };
     }
     for weight in BOUND_WEIGHTS {
@@ -79,8 +76,7 @@ pub fn consistent(model: &RegressionModel, found: &Estimate, start: &[f64]) -> C
             break;
         }
         problem.weight = weight;
-        let (next, more) = problem.search(&eta);
-        (eta, steps) = (next, steps + more);
+        eta = problem.search(&eta);
     }
     let (theta, _) = problem.coordinates.standard(&eta);
     let residual = &problem.target - &problem.jacobian * &theta;
@@ -88,7 +84,7 @@ pub fn consistent(model: &RegressionModel, found: &Estimate, start: &[f64]) -> C
     let phi = model.axes_of_standard(&standard);
     let own = problem.coordinates.own_values(&eta);
     let distance = (residual.norm_squared() / rank.max(1) as f64).sqrt();
-    Consistent { standard, phi, distance, own, steps }
+    Consistent { standard, phi, distance, own }
 }
 
 struct Problem<'a> {
@@ -146,28 +142,25 @@ impl Problem<'_> {
     }
 
     /// The nearest coordinates to targets on the way from those of before to the target, one after
-    /// the other, and the steps that were made.
-    fn search_in_stages(&mut self) -> (DVector<f64>, usize) {
+    /// the other.
+    fn search_in_stages(&mut self) -> DVector<f64> {
         let last = self.target.clone();
         let begin = &self.jacobian * self.coordinates.standard(&self.first).0;
-        let (mut eta, mut steps) = (self.first.clone(), 0);
+        let mut eta = self.first.clone();
         for stage in 1..=STAGES {
             self.target = &begin + (&last - &begin) * (stage as f64 / STAGES as f64);
-            let (next, more) = self.search(&eta);
-            (eta, steps) = (next, steps + more);
+            eta = self.search(&eta);
         }
         self.target = last;
-        (eta, steps)
+        eta
     }
 
-    /// The nearest coordinates from `eta` on, and the steps that were made (Levenberg, Marquardt).
-    fn search(&self, eta: &DVector<f64>) -> (DVector<f64>, usize) {
+    /// The nearest coordinates from `eta` on (Levenberg, Marquardt).
+    fn search(&self, eta: &DVector<f64>) -> DVector<f64> {
         let mut eta = eta.clone();
         let mut damping = 1e-3;
-        let mut steps = 0;
         let mut cost = self.cost(&eta);
-        while steps < MAX_STEPS {
-            steps += 1;
+        for _ in 0..MAX_STEPS {
             let (residual, j) = self.rows(&eta);
             let next = damped(&j, &residual, &(&self.first - &eta), damping).map(|step| {
                 let longest = step.amax();
@@ -188,7 +181,7 @@ impl Problem<'_> {
                 None => damping = damping.max(1e-12) * 8.0,
             }
         }
-        (eta, steps)
+        eta
     }
 }
 

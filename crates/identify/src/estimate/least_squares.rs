@@ -94,8 +94,6 @@ pub struct Estimate {
     pub condensed: Condensed,
     /// For each log what each joint's rows count.
     pub weights: Vec<Vec<f64>>,
-    /// Times that weights were found.
-    pub rounds: usize,
     /// Rows that do not count.
     pub(super) left_out: LeftOut,
 }
@@ -279,7 +277,7 @@ impl Fit<'_> {
 
     /// Least squares, rows weighted by the noise of their joint in their log if that is wanted.
     fn by_noise(&self, condensed: Condensed, is_weighted: bool) -> Estimate {
-        let Settled { solution, weights, noise, rounds } = self.settled(&condensed, is_weighted);
+        let Settled { solution, weights, noise } = self.settled(&condensed, is_weighted);
         Estimate {
             solution,
             covariance: DMatrix::zeros(0, 0),
@@ -291,7 +289,6 @@ impl Fit<'_> {
             noise,
             condensed,
             weights,
-            rounds,
             left_out: LeftOut::none(&[]),
         }
     }
@@ -352,7 +349,6 @@ impl Fit<'_> {
         let next = self.solved(&condensed, &condensed.whole(), &weights);
         let change = moved(&found.solution, &next);
         (found.weights, found.condensed, found.solution) = (weights, condensed, next);
-        found.rounds += 1;
         change
     }
 

@@ -28,7 +28,6 @@ pub(super) struct Settled {
     pub(super) solution: Solution,
     pub(super) weights: ByLog,
     pub(super) noise: ByLog,
-    pub(super) rounds: usize,
 }
 
 impl Fit<'_> {
@@ -74,7 +73,7 @@ impl Fit<'_> {
     ) -> Settled {
         let solution = self.solved(condensed, triangles, &weights);
         let noise = condensed.deviations(triangles, &solution, &weights);
-        Settled { solution, weights, noise, rounds: 1 }
+        Settled { solution, weights, noise }
     }
 
     fn settle(
@@ -83,11 +82,11 @@ impl Fit<'_> {
         triangles: &[Vec<Triangle>],
         mut found: Settled,
     ) -> Settled {
-        while found.rounds < MAX_REWEIGHTING {
+        for _ in 1..MAX_REWEIGHTING {
             let weights = condensed.reciprocal(&found.noise, triangles);
             let next = self.weighed(condensed, triangles, weights);
             let change = moved(&found.solution, &next.solution);
-            found = Settled { rounds: found.rounds + 1, ..next };
+            found = next;
             if change < SETTLED {
                 break;
             }

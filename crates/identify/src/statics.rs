@@ -112,9 +112,9 @@ fn misread_postures(model: &RegressionModel, measurements: &[StaticMeasurement])
     let what = if of_torques { "torques" } else { "positions" };
     let how = if factor == -1.0 { "have the wrong sign" } else { "be in another unit" };
     let text = format!(
-        "{what} of the postures seem to {how}: the model's own values leave {:.0} % of the torques, \
-         and {:.0} % with {factor} times the {what}\n  hint: `logs.accepts_suspicious` takes them \
-         as they are",
+        "{what} of the postures seem to {how}: the model's own values leave {:.0} % of the \
+         torques, and {:.0} % with {factor} times the {what}\n  hint: `logs.accepts_suspicious` \
+         takes them as they are",
         100.0 * before,
         100.0 * after
     );

@@ -2,6 +2,7 @@
 //! rests.
 
 use super::least_squares::Estimate;
+use super::left_over::Left;
 use super::noise_bias::noise_in_torques;
 use super::rows::BlockMaker;
 use super::validate::{Validation, validate};
@@ -11,6 +12,7 @@ use crate::policy::unexplained::{
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
+use std::collections::VecDeque;
 
 /// Samples of each log that are looked at, and in blocks of so many.
 const BLOCKS: usize = 16;
@@ -163,10 +165,13 @@ fn resting(
         return Vec::new();
     }
     let first_s = log.start_s + log.step_s * log.range.start as f64;
-    let of = |(joint, own): (usize, RestingJoint)| {
+    let of = |(joint, (own, beyond)): (usize, (Left, f64))| {
+        let by_chance = (own.apart / own.rows).sqrt();
+        if own.alike <= (ALIKE + by_chance) * own.both || own.both == 0.0 {
+            return None; // noise, as far as so many periods tell
+        }
         let name = &model.joints[joint].name;
-        let torque = left.joint(name)?.torque_rms;
-        let share = own.unexplained(samples_of(log, 1.0))?.sqrt() / torque;
+        let share = (beyond / own.rows).sqrt() / left.joint(name)?.torque_rms;
         let spell = longest(&rests[joint]);
         let rest_s = [spell.start, spell.end].map(|at| first_s + log.step_s * at as f64);
         let told = Unexplained { rest_s: Some(rest_s), ..Unexplained::of(name, share) };
@@ -175,53 +180,36 @@ fn resting(
     at_rest(model, log, found, &rests).into_iter().enumerate().filter_map(of).collect()
 }
 
-/// What is left of the torque of a joint that rests.
-#[derive(Clone, Default)]
-struct RestingJoint {
-    /// What is left of each sample, and whether the joint rests there.
-    left: Vec<(f64, bool)>,
-    /// What stiction holds.
-    held: f64,
-}
-
-impl RestingJoint {
-    /// The mean square of what is left at rest and stiction does not hold; none if it is noise, as
-    /// far as so many periods tell, each of so many samples.
-    fn unexplained(&self, period: usize) -> Option<f64> {
-        let beyond = |left: f64| (left.abs() - self.held).max(0.0).powi(2);
-        let at_rest = self.left.iter().filter(|(_, rests)| *rests);
-        let [rows, beyond] =
-            at_rest.fold([0.0; 2], |[rows, sum], (left, _)| [rows + 1.0, sum + beyond(*left)]);
-        let pairs = self.left.iter().zip(self.left.iter().skip(period));
-        let pairs = pairs.filter(|((_, one), (_, other))| *one && *other);
-        let [alike, all] = pairs.fold([0.0; 2], |[alike, all], ((one, _), (other, _))| {
-            [alike + one * other, all + 0.5 * (one * one + other * other)]
-        });
-        let by_chance = (period as f64 / rows).sqrt();
-        (alike > (ALIKE + by_chance) * all).then_some(beyond / rows)
-    }
-}
-
+/// What is left of the torque of each joint while it rests, compared over a period of the filter's
+/// cutoff, and the sum of the squares of what stiction does not hold of it.
 fn at_rest(
     model: &RegressionModel,
     log: &Conditioned,
     found: &Estimate,
     rests: &[Vec<bool>],
-) -> Vec<RestingJoint> {
+) -> Vec<(Left, f64)> {
     let phi = found.solution.phi.as_slice();
     // friction that is not shown holds nothing that is known
     let rows = found.solution.factor.row_iter();
     let is_shown = rows.map(|row| f64::from(u8::from(row.norm() > 0.0)));
     let shown: Vec<f64> = phi.iter().zip(is_shown).map(|(phi, is_shown)| phi * is_shown).collect();
     let mut maker = BlockMaker::new(model, log);
-    let held = |joint: usize| STICTION * maker.coulomb_friction(JointIndex(joint), &shown);
-    let mut joints: Vec<RestingJoint> = (0..rests.len())
-        .map(|joint| RestingJoint { left: Vec::new(), held: held(joint) })
-        .collect();
+    let apart = samples_of(log, 1.0) as f64;
+    let none = |joint: usize| {
+        let friction = maker.coulomb_friction(JointIndex(joint), &shown);
+        (Left { apart, friction, ..Left::default() }, 0.0)
+    };
+    let mut joints: Vec<(Left, f64)> = (0..rests.len()).map(none).collect();
+    let mut recent = vec![VecDeque::new(); joints.len()];
     let places: Vec<usize> = log.places(SampleIndex(0), log.samples()).collect();
     maker.for_each_left(phi, |joint, sample, [.., left]| {
-        let rests = rests[joint.0].get(places[sample.0] - log.range.start);
-        joints[joint.0].left.extend(rests.map(|rests| (left, *rests)));
+        let place = places[sample.0] - log.range.start;
+        let Some(&rests) = rests[joint.0].get(place) else { return };
+        let (own, beyond) = &mut joints[joint.0];
+        own.add(rests.then_some(left), &mut recent[joint.0]);
+        if rests {
+            *beyond += (left.abs() - STICTION * own.friction).max(0.0).powi(2);
+        }
     });
     joints
 }

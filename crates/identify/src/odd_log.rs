@@ -1,7 +1,8 @@
 //! The log of several that is unlike the others.
 
-use super::estimate::{Estimate, Solution, Triangle, solve};
+use super::estimate::Estimate;
 use denavit_measure::{LogIndex, PartIndex};
+use denavit_numerics::least_squares::{Solution, Triangle, solve};
 use denavit_plants::regression::RegressionModel;
 
 /// Of several logs the one, of those that are asked, without which the others agree best, and what

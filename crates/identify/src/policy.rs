@@ -81,9 +81,6 @@ pub(crate) mod errors {
     /// A larger share of what is known of a direction is taken for this one.
     pub(crate) const MOST_LEVERAGE: f64 = 0.95;
 
-    /// The normal deviate below which one of twenty lies.
-    pub(crate) const ONE_OF_TWENTY: f64 = -1.644_853_626_951;
-
     /// Neighbouring parts are taken to be no more alike than this.
     pub(crate) const MOST_ALIKE: f64 = 0.8;
 }
@@ -214,18 +211,6 @@ pub(crate) mod robust {
 
     /// See [`HUBER`].
     pub(crate) const BISQUARE: f64 = 4.685;
-}
-
-/// `estimate/solve.rs`: Least squares of condensed rows, and which directions of phi they say
-/// nothing about.
-pub(crate) mod solve {
-    /// A direction is not excited if its singular value, of columns scaled to length 1, is below
-    /// this share of the largest.
-    pub(crate) const DEAD: f64 = 1e-9;
-
-    /// Rows count no more than this, so that squares of what is weighted are numbers: torques of
-    /// 1e-160 have other squares than they can have.
-    pub(crate) const MOST_WEIGHT: f64 = 1e100;
 }
 
 /// `estimate/long/text.rs`: Rows of a piece of a long log as JSON.

@@ -2,18 +2,23 @@
 //!
 //! - [`Random`]: numbers from a seed, the same on every machine
 //! - [`MinimumNorm`]: square systems of any rank
+//! - [`least_squares`]: rows condensed to triangles as they come, and what follows from them
+//! - [`interval_factor`], [`least_by_chance`]: what chance makes of errors and variances
 //! - [`extremes`]: the rows of long columns that a picture needs
 //! - [`envelope`]: what is between the ends of a signal that chatters
 //! - [`short`], [`percent`]: numbers as a person writes them
 
 mod envelope;
 mod extremes;
+pub mod least_squares;
 mod minimum_norm;
 mod random;
 mod text;
+mod variances;
 
 pub use envelope::{Span, envelope};
 pub use extremes::extremes;
 pub use minimum_norm::MinimumNorm;
 pub use random::Random;
 pub use text::{percent, short};
+pub use variances::{interval_factor, least_by_chance};

@@ -5,10 +5,9 @@
 
 use super::left_out::{LeftOut, NumberedLog};
 use super::rows::{Block, BlockMaker};
-use super::solve::{PriorRow, stacked};
-use super::triangle::Triangle;
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex, PartIndex, SampleIndex};
+use denavit_numerics::least_squares::{PriorRow, Triangle, stacked};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
 use std::borrow::Cow;

@@ -13,11 +13,11 @@ use super::least_squares::{Estimate, Options};
 use super::left_out::{LeftOut, NumberedLog};
 use super::noise_bias::noise_squares;
 use super::own_estimate::{Tested, spread};
-use super::triangle::Triangle;
 use super::unexplained::{Unexplained, moves};
 use crate::policy::held_out::{MANY, OF_BAND, OF_NOISE, OF_TORQUE};
 use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
+use denavit_numerics::least_squares::Triangle;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DVector;
 

@@ -1,7 +1,7 @@
 //! The estimates: one loop of weighting and solving, by method.
 
 use super::condensed::{Condensed, Rows};
-use super::errors::{Errors, FEWEST_PARTS, Problem, least_by_chance};
+use super::errors::{Errors, FEWEST_PARTS, Problem};
 use super::half_cutoff::Change;
 use super::instruments;
 use super::left_out::{LeftOut, SlowRows};
@@ -9,14 +9,14 @@ use super::likelihood;
 use super::noise_bias::{NoiseBias, NoiseOfLog, noise_bias};
 use super::robust::{Loss, influences, scales};
 use super::rows::Block;
-use super::solve::{PriorRow, Solution, solve};
 use super::total;
-use super::triangle::Triangle;
 use super::weights::{ByLog, MAX_REWEIGHTING, SETTLED, Settled, moved};
 use crate::error::{Error, ErrorKind};
 use crate::policy::least_squares::{FEWEST_DEGREES, MOVES_LITTLE};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex};
+use denavit_numerics::least_by_chance;
+use denavit_numerics::least_squares::{PriorRow, Solution, Triangle, solve};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 

@@ -2,9 +2,8 @@
 
 use super::condensed::Condensed;
 use super::errors::{Errors, Problem};
-use super::solve::solve;
-use super::triangle::Triangle;
 use denavit_measure::LogIndex;
+use denavit_numerics::least_squares::{Triangle, solve};
 use nalgebra::{DMatrix, DVector};
 
 /// What the columns of an equation are multiplied with.

@@ -3,9 +3,8 @@
 
 use super::condensed::Condensed;
 use super::errors::{FEWEST_PARTS, Problem, long_run};
-use super::solve::{DEAD, Solution, solve, stacked};
-use super::triangle::Triangle;
 use denavit_measure::{JointIndex, LogIndex};
+use denavit_numerics::least_squares::{DEAD, Solution, Triangle, solve, stacked};
 use nalgebra::{DMatrix, DVector};
 
 /// Times that the weights of a log's own estimate are found anew.

@@ -1,11 +1,11 @@
 //! What was found, in the parameters that are reported: values, errors, and which mean something.
 
-use super::errors::interval_factor;
 use super::least_squares::Estimate;
-use super::solve::solve;
 pub(crate) use crate::policy::report::BIASING;
 use crate::policy::report::{DEAD_SHARE, LIKELY, SURE};
 use denavit_measure::PartIndex;
+use denavit_numerics::interval_factor;
+use denavit_numerics::least_squares::solve;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DVector;
 

@@ -4,11 +4,11 @@
 use super::condensed::Rows;
 use super::errors::{Errors, FEWEST_PARTS, Problem};
 use super::left_out::NumberedLog;
-use super::solve::solve;
 use super::weights::ByLog;
 use crate::policy::robust::{BISQUARE, HUBER, LEAST_SLOPE};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
+use denavit_numerics::least_squares::solve;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
 

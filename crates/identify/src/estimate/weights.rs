@@ -7,11 +7,10 @@
 
 use super::condensed::Condensed;
 use super::least_squares::Fit;
-use super::solve::Solution;
-use super::triangle::Triangle;
 pub(super) use crate::policy::weights::SETTLED;
 use crate::policy::weights::{LEAST_FREE, SHARED};
 use denavit_measure::JointIndex;
+use denavit_numerics::least_squares::{Solution, Triangle};
 
 /// Times that weights are found anew.
 pub(super) const MAX_REWEIGHTING: usize = 30;

@@ -18,10 +18,11 @@
 mod readings;
 
 use super::error::{Error, ErrorKind};
-use super::estimate::{self, OneEquation, SlowRows, Triangle, estimate};
+use super::estimate::{self, OneEquation, SlowRows, estimate};
 use denavit_measure::JointIndex;
 use denavit_measure::condition::{Conditioned, Conditioning};
 use denavit_measure::log::{JointSignals, MeasuredLog};
+use denavit_numerics::least_squares::Triangle;
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
 use denavit_plants::{DriveModel, PlantModel, SeriesElasticModel};
 

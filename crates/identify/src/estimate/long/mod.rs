@@ -11,11 +11,11 @@ use super::half_cutoff::SAMPLES;
 use super::least_squares::{Estimate, Fit, Method, Options};
 use super::left_out::{LeftOut, SlowRows};
 use super::rows::BlockMaker;
-use super::triangle::Triangle;
 use super::validate::{JointResidual, Validation};
 use crate::error::Error;
 use denavit_measure::condition::{Conditioned, Piece};
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
+use denavit_numerics::least_squares::Triangle;
 use denavit_plants::regression::{CoulombLaw, RegressionJoint, RegressionModel};
 
 /// What the head of a long log says of the rows of the rest.

@@ -10,7 +10,6 @@
 //! - [`identify`]: all of it at once
 //! - [`updated_model`]: back into the model file
 //! - [`statics`], [`read_statics`]: what weighings and held postures say
-//! - [`knowledge`]: equations of parameters from all sources, joined, and what follows from them
 //! - [`Error`]: why there is no answer, of all of these
 
 mod contact_forces;
@@ -20,7 +19,6 @@ pub mod estimate;
 pub mod forward;
 mod identification;
 mod idle;
-pub mod knowledge;
 mod known_effects;
 mod long;
 mod noisy_logs;

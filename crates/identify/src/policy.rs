@@ -308,17 +308,6 @@ pub(crate) mod idle {
     pub(crate) const ROUNDING: f64 = 1e-9;
 }
 
-/// `knowledge.rs`: What is known of the standard parameters theta0, from any source, as linear
-/// equations with errors: A theta0 = b + e, each row divided by the standard deviation of its
-/// error.
-pub(crate) mod knowledge {
-    /// Parts of a row space below this, of the largest, are rounding.
-    pub(crate) const RANK_TOLERANCE: f64 = 1e-10;
-
-    /// Below this share of its column an entry of a reduced system is rounding.
-    pub(crate) const ROUNDING: f64 = 1e-9;
-}
-
 /// `noisy_logs.rs`: Logs of which noise of the positions makes most, and those that bias
 /// parameters by it.
 pub(crate) mod noisy_logs {

@@ -7,10 +7,11 @@
 //! link by link; least squares in all rows does the subtraction.
 
 use super::error::{Error, ErrorKind};
-use super::knowledge::Knowledge;
 use crate::policy::statics::{BETTER, FAR, NEAR, OF_ANGLES, OF_TORQUES, OTHER_UNIT};
 use denavit_codegen::expr::text::nearest;
+use denavit_numerics::Equations;
 use denavit_plants::regression::{RegressionJoint, RegressionModel, RegressionRows};
+use nalgebra::{DMatrix, DVector};
 
 /// Something that was measured at rest.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,8 +133,8 @@ fn resting(q: impl Iterator<Item = f64>, model: &RegressionModel) -> Vec<f64> {
 pub fn static_knowledge(
     model: &RegressionModel,
     measurements: &[StaticMeasurement],
-) -> Result<Knowledge, Error> {
-    let mut knowledge = Knowledge::none(model.standard.len());
+) -> Result<Equations, Error> {
+    let mut knowledge = Equations::none(model.standard.len());
     let mut faults = Vec::new();
     let mut evaluator = model.evaluator();
     for (at, measurement) in measurements.iter().enumerate() {
@@ -171,6 +172,23 @@ pub fn static_knowledge(
         }
     }
     if faults.is_empty() { Ok(knowledge) } else { Err(faults.into()) }
+}
+
+/// Adds base parameters on the joint axes that were estimated, with their covariance, to what is
+/// known of the standard ones. False if the covariance leaves directions open.
+pub fn add_estimate(
+    knowledge: &mut Equations,
+    model: &RegressionModel,
+    phi: &[f64],
+    covariance: &DMatrix<f64>,
+) -> bool {
+    // C = L L^T: L^-1 (phi - estimate) has unit covariance
+    let Some(factor) = covariance.clone().cholesky() else { return false };
+    let identity = DMatrix::identity(phi.len(), phi.len());
+    let Some(root) = factor.l().solve_lower_triangular(&identity) else { return false };
+    let values = &root * DVector::from_column_slice(phi);
+    knowledge.add_rows(&(root * model.of_standard()), &values);
+    true
 }
 
 /// The masses of links, with factor 1.
@@ -223,7 +241,7 @@ fn hold(
     rows: &RegressionRows,
     at: usize,
     torque: &HoldingTorque,
-    knowledge: &mut Knowledge,
+    knowledge: &mut Equations,
     faults: &mut Vec<Error>,
 ) {
     let names = || model.joints.iter().map(|joint| joint.name.as_str());

@@ -2,6 +2,7 @@
 //!
 //! - [`Random`]: numbers from a seed, the same on every machine
 //! - [`MinimumNorm`]: square systems of any rank
+//! - [`Equations`]: linear equations with errors, and which unknowns or sums of them follow
 //! - [`least_squares`]: rows condensed to triangles as they come, and what follows from them
 //! - [`interval_factor`], [`least_by_chance`]: what chance makes of errors and variances
 //! - [`extremes`]: the rows of long columns that a picture needs
@@ -9,6 +10,7 @@
 //! - [`short`], [`percent`]: numbers as a person writes them
 
 mod envelope;
+mod equations;
 mod extremes;
 pub mod least_squares;
 mod minimum_norm;
@@ -17,6 +19,7 @@ mod text;
 mod variances;
 
 pub use envelope::{Span, envelope};
+pub use equations::{Consequences, Determined, Equations};
 pub use extremes::extremes;
 pub use minimum_norm::MinimumNorm;
 pub use random::Random;

@@ -2,7 +2,7 @@
 
 use crate::identification::warnings;
 use crate::{Align, Table, paragraph, short};
-use denavit_identify::knowledge::Determined;
+use denavit_numerics::Determined;
 use denavit_plants::regression::RegressionModel;
 use denavit_workflow::StaticsFound;
 use serde_json::json;
@@ -55,7 +55,7 @@ fn write(out: &mut String, all: &StaticsFound) -> fmt::Result {
         "{}: {} equations determine {} combinations of {} parameters, of which {alone} stand \
          alone\n",
         model.model,
-        knowledge.equations(),
+        knowledge.count(),
         found.combinations.len(),
         model.standard.len(),
     )?;
@@ -118,7 +118,7 @@ pub fn statics_json(all: &StaticsFound) -> serde_json::Value {
     });
     json!({
         "model": model.model,
-        "equations": knowledge.equations(),
+        "equations": knowledge.count(),
         "parameters": parameters.collect::<Vec<_>>(),
         "combinations": combinations.collect::<Vec<_>>(),
         "chi_squared": found.chi_squared,

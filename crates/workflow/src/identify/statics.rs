@@ -5,9 +5,9 @@ use crate::error::{Cause, Error};
 use crate::logs::Logs;
 use crate::observer::Observer;
 use crate::robot_file::RobotFile;
-use denavit_identify::knowledge::{Consequences, Knowledge};
-use denavit_identify::statics::{check_units, static_knowledge};
+use denavit_identify::statics::{add_estimate, check_units, static_knowledge};
 use denavit_identify::{Identification, read_statics};
+use denavit_numerics::{Consequences, Equations};
 use denavit_plants::regression::RegressionModel;
 
 /// What follows from measurements at rest.
@@ -16,7 +16,7 @@ pub struct StaticsFound {
     /// Parameters and their columns.
     pub model: RegressionModel,
     /// The equations.
-    pub knowledge: Knowledge,
+    pub knowledge: Equations,
     /// What follows from them.
     pub found: Consequences,
     /// What was noticed of the logs.
@@ -74,8 +74,8 @@ pub fn identify_statics(
 }
 
 /// Why nothing follows, if nothing does.
-fn nothing_follows(knowledge: &Knowledge, found: &Consequences) -> Option<&'static str> {
-    match (knowledge.equations(), found.combinations.len()) {
+fn nothing_follows(knowledge: &Equations, found: &Consequences) -> Option<&'static str> {
+    match (knowledge.count(), found.combinations.len()) {
         (0, _) => Some(
             "Nothing follows: the file has neither weighings nor torques of postures, and no log \
              says more. `denavit schema statics` prints what it may have.",
@@ -92,11 +92,11 @@ fn nothing_follows(knowledge: &Knowledge, found: &Consequences) -> Option<&'stat
 fn join(
     model: &RegressionModel,
     identified: &Identified,
-    knowledge: &mut Knowledge,
+    knowledge: &mut Equations,
 ) -> Option<&'static str> {
     let estimate = &identified.found.estimate;
     let phi = estimate.solution.phi.as_slice();
-    let is_joined = knowledge.add_estimate(model, phi, &estimate.covariance);
+    let is_joined = add_estimate(knowledge, model, phi, &estimate.covariance);
     (!is_joined).then_some(
         "The logs leave directions of the parameters open: they are not joined with the \
          measurements at rest.",

@@ -80,9 +80,6 @@ pub(crate) mod errors {
 
     /// A larger share of what is known of a direction is taken for this one.
     pub(crate) const MOST_LEVERAGE: f64 = 0.95;
-
-    /// Neighbouring parts are taken to be no more alike than this.
-    pub(crate) const MOST_ALIKE: f64 = 0.8;
 }
 
 /// `estimate/held_out.rs`: Logs for validation held against those for the estimate.

@@ -5,6 +5,7 @@
 //! - [`Equations`]: linear equations with errors, and which unknowns or sums of them follow
 //! - [`least_squares`]: rows condensed to triangles as they come, and what follows from them
 //! - [`interval_factor`], [`least_by_chance`]: what chance makes of errors and variances
+//! - [`long_run`], [`time_alike`]: variances and samples where neighbours are alike
 //! - [`extremes`]: the rows of long columns that a picture needs
 //! - [`envelope`]: what is between the ends of a signal that chatters
 //! - [`short`], [`percent`]: numbers as a person writes them
@@ -24,4 +25,4 @@ pub use extremes::extremes;
 pub use minimum_norm::MinimumNorm;
 pub use random::Random;
 pub use text::{percent, short};
-pub use variances::{interval_factor, least_by_chance};
+pub use variances::{interval_factor, least_by_chance, long_run, time_alike};

@@ -1,10 +1,10 @@
 //! Standard errors that hold where residuals are alike from one sample to the next.
 
 use super::condensed::Condensed;
-use crate::policy::errors::{MOST_ALIKE, MOST_LEVERAGE, NEIGHBOURS};
-use denavit_measure::{JointIndex, LogIndex, PartIndex};
-use denavit_numerics::Random;
+use crate::policy::errors::{MOST_LEVERAGE, NEIGHBOURS};
+use denavit_measure::{JointIndex, PartIndex};
 use denavit_numerics::least_squares::{PriorRow, Solution, Triangle, solve};
+use denavit_numerics::{Random, long_run};
 use nalgebra::{DMatrix, DVector};
 
 /// How standard errors are found.
@@ -188,54 +188,10 @@ impl Problem<'_> {
     }
 }
 
-/// The covariance of a sum over parts, of which neighbours of the same log are correlated: counted
-/// half where they are hardly, and where they are more, as much again as a process of first order
-/// has at larger distances, whose sums are 1 / (1 - r) times those of its neighbours.
-pub(super) fn long_run(parts: &[DVector<f64>], log_of_part: &[LogIndex]) -> DMatrix<f64> {
-    let size = parts.first().map_or(0, DVector::len);
-    let (mut sum, mut beside) = (DMatrix::zeros(size, size), DMatrix::zeros(size, size));
-    for (at, part) in parts.iter().enumerate() {
-        sum += part * part.transpose();
-        if let Some(next) = parts.get(at + 1).filter(|_| log_of_part[at + 1] == log_of_part[at]) {
-            let cross = part * next.transpose();
-            beside += (&cross + cross.transpose()) * 0.5;
-        }
-    }
-    let alike = (0..size).filter(|&at| sum[(at, at)] > 0.0);
-    let alike: Vec<f64> = alike.map(|at| beside[(at, at)] / sum[(at, at)]).collect();
-    let alike = alike.iter().sum::<f64>() / alike.len().max(1) as f64;
-    (sum + beside) / (1.0 - alike.clamp(0.0, MOST_ALIKE))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Sums over 64 parts of a process of first order, whose variance is known: white, and one
-    /// whose neighbours are correlated by a half, of which neighbours alone would show half.
-    #[test]
-    fn sums_of_parts_that_are_alike_have_their_variance() {
-        const PARTS: usize = 64;
-        let log_of_part = [LogIndex(0); PARTS];
-        let mut random = Random::new(3);
-        for alike in [0.0_f64, 0.5] {
-            let fresh = (1.0 - alike * alike).sqrt();
-            let mut mean = 0.0;
-            for _ in 0..400 {
-                let mut last = random.normal();
-                let parts: Vec<DVector<f64>> = (0..PARTS)
-                    .map(|_| {
-                        last = alike * last + fresh * random.normal();
-                        DVector::from_element(1, last)
-                    })
-                    .collect();
-                mean += long_run(&parts, &log_of_part)[(0, 0)] / 400.0;
-            }
-            let distances = (1..PARTS).map(|d| (PARTS - d) as f64 * alike.powi(d as i32));
-            let variance = PARTS as f64 + 2.0 * distances.sum::<f64>();
-            assert!((mean / variance - 1.0).abs() < 0.12, "{alike}: {mean} {variance}");
-        }
-    }
+    use denavit_measure::LogIndex;
 
     /// Of 24 parts six decide a parameter alike, and all another one: their variances have as many
     /// degrees of freedom as sums with neighbours counted half, of so many.

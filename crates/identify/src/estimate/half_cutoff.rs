@@ -8,11 +8,12 @@
 //! difference of what each part of the logs does to them (Hausman 1978).
 
 use super::condensed::{Condensed, Rows};
-use super::errors::{FEWEST_PARTS, Problem, long_run};
+use super::errors::{FEWEST_PARTS, Problem};
 use super::least_squares::{Estimate, Fit};
 use crate::policy::half_cutoff::OF_CHANGE;
 use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
+use denavit_numerics::long_run;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 

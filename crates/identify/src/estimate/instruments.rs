@@ -6,13 +6,13 @@
 //! 2014). With [Z | W | y] = Q R the equation is the upper block of R, and no square is formed.
 
 use super::condensed::{Condensed, Rows};
-use super::errors::long_run;
 use super::least_squares::Estimate;
 use super::rows::BlockMaker;
 use crate::error::{Error, ErrorKind};
 use crate::policy::instruments::{MOVES, OTHER};
 use denavit_measure::condition::Conditioned;
 use denavit_numerics::least_squares::Triangle;
+use denavit_numerics::long_run;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;

@@ -2,9 +2,10 @@
 //! that chance explains.
 
 use super::condensed::Condensed;
-use super::errors::{FEWEST_PARTS, Problem, long_run};
+use super::errors::{FEWEST_PARTS, Problem};
 use denavit_measure::{JointIndex, LogIndex};
 use denavit_numerics::least_squares::{DEAD, Solution, Triangle, solve, stacked};
+use denavit_numerics::long_run;
 use nalgebra::{DMatrix, DVector};
 
 /// Times that the weights of a log's own estimate are found anew.

@@ -6,6 +6,7 @@ use super::window::{Window, with_sign};
 use crate::estimate::{Coulomb, coulomb};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, SampleIndex};
+use denavit_numerics::time_alike;
 use denavit_plants::regression::{RegressionEvaluator, RegressionModel, RegressionRows};
 use nalgebra::{DMatrix, DVector};
 
@@ -313,39 +314,5 @@ impl<'a> Sample<'a> {
         measured
             .map(|joint| by_filter.min(rows[joint] / time_alike(&alike[joint])).max(1.0))
             .collect()
-    }
-}
-
-/// The samples over which a signal is like itself, from the sums of its products with itself so
-/// many samples later: those of the initial positive sequence (Geyer 1992).
-fn time_alike(alike: &[f64]) -> f64 {
-    if alike[0] <= 0.0 {
-        return 1.0;
-    }
-    let pairs = alike[1..].chunks_exact(2).map(|pair| (pair[0] + pair[1]) / alike[0]);
-    1.0 + 2.0 * pairs.take_while(|pair| *pair > 0.0).sum::<f64>()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::time_alike;
-    use denavit_numerics::Random;
-
-    /// An autoregressive signal of the first order with factor 0.8 is like itself over
-    /// (1 + 0.8) / (1 - 0.8) = 9 samples.
-    #[test]
-    fn signals_are_like_themselves_as_long_as_theory_says() {
-        let mut random = Random::new(3);
-        let mut last = 0.0;
-        let signal: Vec<f64> = (0..200_000)
-            .map(|_| {
-                last = 0.8 * last + random.normal();
-                last
-            })
-            .collect();
-        let of_lag = |lag: usize| signal.iter().zip(&signal[lag..]).map(|(a, b)| a * b).sum();
-        let alike: Vec<f64> = (0..256).map(of_lag).collect();
-        let time = time_alike(&alike);
-        assert!((time - 9.0).abs() < 0.7, "{time}");
     }
 }

@@ -1,6 +1,5 @@
 //! Identification: from motion to parameters, with honest errors (thesis chapter 3).
 //!
-//! - [`add_contact_forces`], [`add_wrenches`]: what the ground, and pushes, do to each equation
 //! - [`take_out`]: effects that the model has beside its equations, taken out of logs
 //! - [`leave_out_idle_motors`]: torques of joints that a brake holds
 //! - [`estimate`]: base parameters with their errors, and what they leave unexplained
@@ -12,7 +11,6 @@
 //! - [`statics`], [`read_statics`]: what weighings and held postures say
 //! - [`Error`]: why there is no answer, of all of these
 
-mod contact_forces;
 pub mod doubt;
 mod error;
 pub mod estimate;
@@ -29,7 +27,6 @@ mod statics_file;
 pub mod two_stage;
 mod updated_model;
 
-pub use contact_forces::{Ground, add_contact_forces, add_wrenches};
 pub use error::{Error, ErrorKind};
 pub use identification::{Estimated, Identification, LeftOutRows, Request, estimated, identify};
 pub use idle::leave_out_idle_motors;

@@ -1,14 +1,6 @@
 //! The numbers that decide estimates and what is said of them, each with its unit and where it is
 //! from: those of each module. Doubts have a table of their own.
 
-/// `contact_forces.rs`: Robots that are pushed from outside: what contact forces, and wrenches on
-/// links, do to each equation (thesis 3.3, 5.2.1).
-pub(crate) mod contact_forces {
-    /// Half the distance of differences [rad, m]: of order 4, so that rounding and what is left of
-    /// the Taylor series are both about 1e-13.
-    pub(crate) const DIFFERENCE: f64 = 1e-3;
-}
-
 /// `estimate/bounds.rs`: Masses and moments of inertia that a model's file writes as expressions:
 /// none may be negative.
 pub(crate) mod bounds {

@@ -204,13 +204,9 @@ mod tests {
             vec![triangle]
         };
         let condensed = Condensed {
-            pattern: vec![vec![0, 1]],
             parts: (0..24).map(part).collect(),
             log_of_part: vec![LogIndex(0); 24],
-            end_s: (1..25).map(f64::from).collect(),
-            independent: vec![1.0],
-            row_s: vec![1.0],
-            rank: 2,
+            ..Condensed::without_parts((vec![vec![0, 1]], 2), vec![1.0], vec![1.0])
         };
         let weights = [vec![1.0]];
         let system = condensed.system(&condensed.whole(), &weights, &[]);

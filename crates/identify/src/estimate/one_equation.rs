@@ -18,14 +18,11 @@ impl OneEquation {
     /// Of rows in parts of time that follow each other; none if a column depends on others.
     pub(crate) fn of_parts(parts: Vec<Triangle>) -> Option<Self> {
         let rank = parts.first()?.width();
+        let columns = (vec![(0..rank).collect()], rank);
         let condensed = Condensed {
-            pattern: vec![(0..rank).collect()],
             log_of_part: vec![LogIndex(0); parts.len()],
-            end_s: Vec::new(),
             parts: parts.into_iter().map(|part| vec![part]).collect(),
-            independent: vec![1.0],
-            row_s: vec![1.0],
-            rank,
+            ..Condensed::without_parts(columns, vec![1.0], vec![1.0])
         };
         let whole = condensed.whole();
         let solved =

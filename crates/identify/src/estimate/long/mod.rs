@@ -49,15 +49,8 @@ pub fn pieces(stretches: usize) -> usize {
 
 /// Rows of one log that has no parts yet.
 fn no_parts(model: &RegressionModel, independent: f64, row_s: f64) -> Condensed {
-    Condensed {
-        pattern: model.pattern().to_vec(),
-        parts: Vec::new(),
-        log_of_part: Vec::new(),
-        end_s: Vec::new(),
-        independent: vec![independent],
-        row_s: vec![row_s],
-        rank: model.rank(),
-    }
+    let columns = (model.pattern().to_vec(), model.rank());
+    Condensed::without_parts(columns, vec![independent], vec![row_s])
 }
 
 /// Adds parts that come later, or rows of the part that is the last.

@@ -2,9 +2,17 @@
 //! sums, and samples that count, where neighbours are alike.
 
 use nalgebra::{DMatrix, DVector};
+use std::borrow::Borrow;
 
 /// The normal deviate below which one of twenty lies.
 const ONE_OF_TWENTY: f64 = -1.644_853_626_951;
+
+/// The root of the mean square; 0 of nothing.
+pub fn rms(values: impl IntoIterator<Item = impl Borrow<f64>>) -> f64 {
+    let squares = values.into_iter().map(|value| value.borrow().powi(2));
+    let (sum, count) = squares.fold((0.0, 0_usize), |(sum, count), one| (sum + one, count + 1));
+    (sum / count.max(1) as f64).sqrt()
+}
 
 /// What chance leaves of a variance with so many degrees of freedom, less in one of twenty cases
 /// (Wilson and Hilferty 1931).
@@ -32,7 +40,8 @@ pub fn interval_factor(degrees_of_freedom: f64) -> f64 {
 /// Neighbouring parts are taken to be no more alike than this.
 const MOST_ALIKE: f64 = 0.8;
 
-/// The covariance of a sum over parts, of which neighbours of the same group are correlated: counted
+/// The covariance of a sum over parts, of which neighbours of the same group are correlated:
+/// counted
 /// half where they are hardly, and where they are more, as much again as a process of first order
 /// has at larger distances, whose sums are 1 / (1 - r) times those of its neighbours.
 pub fn long_run<G: PartialEq>(parts: &[DVector<f64>], group_of_part: &[G]) -> DMatrix<f64> {

@@ -17,7 +17,7 @@ use crate::error::{Error, ErrorKind};
 use denavit_measure::SampleIndex;
 use denavit_measure::condition::{Butterworth, Conditioned, Conditioning, Filter};
 use denavit_measure::log::{JointSignals, MeasuredLog};
-use denavit_numerics::short;
+use denavit_numerics::{rms, short};
 use denavit_plants::PlantModel;
 use denavit_simulate::scenario::Controller;
 use denavit_simulate::{
@@ -346,10 +346,4 @@ fn column(log: &Log, prefix: &str, joint: &str, rows: usize) -> Vec<f64> {
     // a last row that rounding kept out of the run
     values.resize(rows, values.last().copied().unwrap_or(0.0));
     values
-}
-
-fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) =
-        values.fold((0.0, 0usize), |(sum, count), value| (sum + value * value, count + 1));
-    (sum / count.max(1) as f64).sqrt()
 }

@@ -23,6 +23,7 @@ use denavit_measure::JointIndex;
 use denavit_measure::condition::{Conditioned, Conditioning};
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::least_squares::Triangle;
+use denavit_numerics::rms;
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
 use denavit_plants::{DriveModel, PlantModel, SeriesElasticModel};
 
@@ -425,8 +426,4 @@ fn in_blocks(columns: &[&[f64]]) -> Option<OneEquation> {
 fn not_excited(what: &str) -> Error {
     let text = format!("the motion does not tell the parameters of {what} apart");
     Error::new(ErrorKind::NotExcited, text)
-}
-
-fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }

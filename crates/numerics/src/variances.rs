@@ -41,9 +41,8 @@ pub fn interval_factor(degrees_of_freedom: f64) -> f64 {
 const MOST_ALIKE: f64 = 0.8;
 
 /// The covariance of a sum over parts, of which neighbours of the same group are correlated:
-/// counted
-/// half where they are hardly, and where they are more, as much again as a process of first order
-/// has at larger distances, whose sums are 1 / (1 - r) times those of its neighbours.
+/// counted half where they are hardly, and where they are more, as much again as a process of first
+/// order has at larger distances, whose sums are 1 / (1 - r) times those of its neighbours.
 pub fn long_run<G: PartialEq>(parts: &[DVector<f64>], group_of_part: &[G]) -> DMatrix<f64> {
     let size = parts.first().map_or(0, DVector::len);
     let (mut sum, mut beside) = (DMatrix::zeros(size, size), DMatrix::zeros(size, size));

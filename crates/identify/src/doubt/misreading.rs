@@ -1,6 +1,6 @@
 //! The ways in which columns can be other ones than they are taken for, and how each is said.
 
-use super::super::policy;
+use super::policy;
 use super::reading::{OF_ANGLES, Signal};
 use denavit_measure::JointIndex;
 use denavit_measure::log::ColumnMapping;

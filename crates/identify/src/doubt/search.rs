@@ -1,7 +1,7 @@
 //! The search for the reading of columns that explains logs best.
 
-use super::super::policy;
 use super::misreading::Misreading;
+use super::policy;
 use super::reading::{Reading, hypotheses};
 use super::sample::Sample;
 use super::weigh::{Beliefs, Believed, Noise, Shares, Trust, together};

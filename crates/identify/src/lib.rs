@@ -8,7 +8,7 @@
 //! - [`forward`]: the identified model in motion against a log
 //! - [`identify`]: all of it at once
 //! - [`updated_model`]: back into the model file
-//! - [`statics`], [`read_statics`]: what weighings and held postures say
+//! - [`statics`]: what weighings and held postures say
 //! - [`Error`]: why there is no answer, of all of these
 
 pub mod doubt;
@@ -23,7 +23,6 @@ mod noisy_logs;
 mod odd_log;
 mod policy;
 pub mod statics;
-mod statics_file;
 pub mod two_stage;
 mod updated_model;
 
@@ -32,5 +31,4 @@ pub use identification::{Estimated, Identification, LeftOutRows, Request, estima
 pub use idle::leave_out_idle_motors;
 pub use known_effects::{take_out, undo_logged_torques, undo_readings};
 pub use noisy_logs::NoisyLog;
-pub use statics_file::{STATICS_FORMAT, read_statics, statics_schema};
 pub use updated_model::{UpdatedModel, updated_model};

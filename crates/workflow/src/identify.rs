@@ -10,6 +10,7 @@ mod logs;
 mod long;
 mod prior;
 mod statics;
+mod statics_file;
 mod two_stage;
 
 use crate::error::{Cause, Error};
@@ -31,6 +32,7 @@ pub use forward::{Controlled, NotMoved, SimulationGap};
 use logs::Read;
 pub use long::{LongLog, LongPlan, PieceRows, identify_long};
 pub use statics::{StaticsFound, identify_statics};
+pub use statics_file::{STATICS_FORMAT, statics_schema};
 pub use two_stage::{TwoStageFound, identify_two_stage};
 
 /// How parameters are identified.

@@ -1,12 +1,13 @@
 //! Weighings and held postures (thesis 3.2.1), joined with logs.
 
+use super::statics_file::read_statics;
 use super::{Identified, IdentifyOptions, identify, regression};
 use crate::error::{Cause, Error};
 use crate::logs::Logs;
 use crate::observer::Observer;
 use crate::robot_file::RobotFile;
+use denavit_identify::Identification;
 use denavit_identify::statics::{add_estimate, check_units, static_knowledge};
-use denavit_identify::{Identification, read_statics};
 use denavit_numerics::{Consequences, Equations};
 use denavit_plants::regression::RegressionModel;
 

@@ -25,9 +25,6 @@ pub(crate) mod consistent {
     /// Weights of what entries of bodies fall short of, one after the other until nothing does.
     pub(crate) const BOUND_WEIGHTS: [f64; 4] = [1e2, 1e4, 1e6, 1e8];
 
-    /// The smallest eigenvalue of a pseudo-inertia to start from, over its trace.
-    pub(crate) const LEAST_SHARE: f64 = 1e-4;
-
     /// The least share of its value in the file that a positive number of it keeps.
     pub(crate) const LEAST_OF: f64 = 1e-6;
 

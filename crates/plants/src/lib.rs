@@ -10,6 +10,7 @@
 //! - [`RobotFunction`]: any function of a robot, on one sample or on many, from many threads
 //! - [`WalkingFunctions`]: momentum about the centre of mass, zero-moment point and the like
 //! - [`effect`]: laws of missing physics, with derivatives by their parameters
+//! - [`body`]: coordinates of bodies that exist
 //! - [`regression`]: torques as linear functions of the base parameters, for many samples at once
 //!
 //! - [`model_text`]: new values and effects in the text of a model file, which else stays as it is
@@ -23,6 +24,7 @@
 //! all vectors and positions are those of the world frame.
 
 pub mod batch;
+pub mod body;
 mod cradle;
 mod derivatives;
 pub mod effect;

@@ -1,15 +1,15 @@
 //! Bodies that exist: the parameters nearest to an estimate with positive definite pseudo-inertias,
 //! and friction and rotor inertia that are not negative.
 //!
-//! The pseudo-inertia of a body is J = L L^T with L lower triangular and of positive diagonal
-//! (log-Cholesky; Rucker, Wensing 2022), so that no step can leave the bodies that exist. What the
+//! Bodies have log-Cholesky coordinates, so that no step can leave those that exist. What the
 //! estimate says nothing about stays near where it started.
 
 use super::bounds::Bounds;
 use super::least_squares::Estimate;
-use crate::policy::consistent::{BOUND_WEIGHTS, FAR, LEAST_OF, LEAST_SHARE, STAY};
+use crate::policy::consistent::{BOUND_WEIGHTS, FAR, LEAST_OF, STAY};
+use denavit_plants::body::{log_cholesky, of_log_cholesky};
 use denavit_plants::regression::RegressionModel;
-use nalgebra::{DMatrix, DVector, Matrix4};
+use nalgebra::{DMatrix, DVector};
 
 /// Steps of the search.
 const MAX_STEPS: usize = 200;
@@ -227,73 +227,6 @@ fn is_owned(model: &RegressionModel, place: usize) -> bool {
     })
 }
 
-/// The pseudo-inertia [[integral of x x^T dm, integral of x dm], [.., m]] of ten parameters.
-pub(super) fn pseudo_inertia(ten: &[f64]) -> Matrix4<f64> {
-    let &[m, x, y, z, xx, yy, zz, xy, xz, yz] = ten else {
-        unreachable!("a body has ten parameters")
-    };
-    let half = 0.5 * (xx + yy + zz);
-    Matrix4::new(
-        half - xx,
-        -xy,
-        -xz,
-        x, //
-        -xy,
-        half - yy,
-        -yz,
-        y, //
-        -xz,
-        -yz,
-        half - zz,
-        z, //
-        x,
-        y,
-        z,
-        m,
-    )
-}
-
-fn ten_parameters(j: &Matrix4<f64>) -> [f64; 10] {
-    let trace = j[(0, 0)] + j[(1, 1)] + j[(2, 2)];
-    let moment = |axis: usize| trace - j[(axis, axis)];
-    let (m, h) = (j[(3, 3)], [j[(0, 3)], j[(1, 3)], j[(2, 3)]]);
-    let products = [-j[(0, 1)], -j[(0, 2)], -j[(1, 2)]];
-    let [x, y, z] = h;
-    let [xy, xz, yz] = products;
-    [m, x, y, z, moment(0), moment(1), moment(2), xy, xz, yz]
-}
-
-/// L of coordinates: the logarithms of its diagonal, then what is below, row by row.
-fn lower(eta: &[f64]) -> Matrix4<f64> {
-    let mut l = Matrix4::zeros();
-    let mut next = 4;
-    for row in 0..4 {
-        l[(row, row)] = eta[row].exp();
-        for column in 0..row {
-            l[(row, column)] = eta[next];
-            next += 1;
-        }
-    }
-    l
-}
-
-/// The Cholesky factor of a pseudo-inertia, its eigenvalues raised where they are too small.
-fn cholesky_of_near(j: &Matrix4<f64>) -> Matrix4<f64> {
-    // A body that is nothing yet: 10 g of the size of a fist.
-    let nothing = Matrix4::from_diagonal(&nalgebra::Vector4::new(1e-5, 1e-5, 1e-5, 1e-2));
-    let trace = j.trace();
-    let j = if trace > 1e-9 { *j } else { nothing };
-    let least = LEAST_SHARE * j.trace().abs();
-    // Masses and moments have sizes of their own: the block of moments is measured by itself.
-    let mut eigen = j.symmetric_eigen();
-    let moments = 1e-3 * (j[(0, 0)] + j[(1, 1)] + j[(2, 2)]).abs().max(1e-6);
-    let floor = least.min(moments).max(1e-9);
-    eigen.eigenvalues.iter_mut().for_each(|value| *value = value.max(floor));
-    let raised = eigen.recompose();
-    let raised = (raised + raised.transpose()) * 0.5;
-    raised.cholesky().map_or_else(|| cholesky_of_near(&nothing), |cholesky| cholesky.l())
-}
-
 /// What coordinates stand for, each piece after the place of its first one.
 struct Coordinates<'a> {
     model: &'a RegressionModel,
@@ -371,11 +304,7 @@ impl<'a> Coordinates<'a> {
                     eta.push(if own.is_positive { above.max(1e-5).sqrt() } else { own.value });
                 }
                 Piece::Body(place) => {
-                    let l = cholesky_of_near(&pseudo_inertia(&start[place..place + 10]));
-                    eta.extend((0..4).map(|row| l[(row, row)].ln()));
-                    for row in 0..4 {
-                        eta.extend((0..row).map(|column| l[(row, column)]));
-                    }
+                    eta.extend(log_cholesky(&start[place..place + 10]));
                 }
             }
         }
@@ -401,23 +330,10 @@ impl<'a> Coordinates<'a> {
                     slope[(place, at)] = 2.0 * eta[at];
                 }
                 Piece::Body(place) => {
-                    let l = lower(&eta.as_slice()[at..at + 10]);
-                    let own = ten_parameters(&(l * l.transpose()));
+                    let (own, slopes) = of_log_cholesky(&eta.as_slice()[at..at + 10]);
                     theta.rows_mut(place, 10).copy_from_slice(&own);
-                    let mut next = 4;
-                    for row in 0..4 {
-                        for column in 0..=row {
-                            // d(L L^T) = dL L^T + L dL^T
-                            let mut change = Matrix4::zeros();
-                            let is_diagonal = row == column;
-                            change[(row, column)] = if is_diagonal { l[(row, row)] } else { 1.0 };
-                            let moved = change * l.transpose() + l * change.transpose();
-                            let coordinate = if is_diagonal { row } else { next };
-                            next += usize::from(!is_diagonal);
-                            let moved = ten_parameters(&moved);
-                            let mut column = slope.view_mut((place, at + coordinate), (10, 1));
-                            column.copy_from_slice(&moved);
-                        }
+                    for (coordinate, own) in slopes.iter().enumerate() {
+                        slope.view_mut((place, at + coordinate), (10, 1)).copy_from_slice(own);
                     }
                 }
             }

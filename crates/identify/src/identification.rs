@@ -8,7 +8,7 @@ use super::estimate::{
     consistent, contradicting_logs, convergence, estimate, filter_errors, lacking, long_enough,
     noise_in_torques, parameters, unexplained_joints, validate,
 };
-use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
+use super::noisy_logs::{MOST, biased_alone, biasing_logs, noisy_logs, shown_logs};
 use super::odd_log::odd_log;
 use crate::policy::identification::{FAR, NOISY, OTHER, SHORT, SMEARED};
 use denavit_measure::condition::Conditioned;
@@ -48,8 +48,8 @@ pub struct Identification {
     /// Logs for the estimate that contradict the others, and those for validation that contradict
     /// the logs for the estimate.
     pub contradicting_logs: Vec<ContradictingLog>,
-    /// Logs of several for the estimate of which noise of the positions makes most.
-    pub noisy_logs: Vec<NoisyLog>,
+    /// Logs of several for the estimate of which noise of the positions makes most, and its share.
+    pub noisy_logs: Vec<(String, f64)>,
     /// The joint of whose torque the filter makes most by itself, since the motion is too fast for
     /// it, and how much: a share of its root of mean square.
     pub filter_error: Option<(String, f64)>,

@@ -30,5 +30,4 @@ pub use error::{Error, ErrorKind};
 pub use identification::{Estimated, Identification, LeftOutRows, Request, estimated, identify};
 pub use idle::leave_out_idle_motors;
 pub use known_effects::{take_out, undo_logged_torques, undo_readings};
-pub use noisy_logs::NoisyLog;
 pub use updated_model::{UpdatedModel, updated_model};

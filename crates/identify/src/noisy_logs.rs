@@ -7,23 +7,12 @@ use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 
-/// A log of which noise makes most, beside others.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NoisyLog {
-    /// Its name.
-    pub file: String,
-    /// The largest share of noise in what it shows of a direction of the parameters by itself.
-    pub share: f64,
-}
-
-/// Of several logs those of which noise makes most.
-pub(super) fn noisy_logs(logs: &[Conditioned], found: &Estimate) -> Vec<NoisyLog> {
-    let noisy = |(_, one): &(&Conditioned, &NoiseOfLog)| logs.len() > 1 && one.share > MOST;
-    let of = |(log, one): (&Conditioned, &NoiseOfLog)| NoisyLog {
-        file: log.file.clone(),
-        share: one.share,
-    };
-    logs.iter().zip(&found.noise_of_logs).filter(noisy).map(of).collect()
+/// Of several logs those of which noise makes most: the largest share of it in what each shows of a
+/// direction of the parameters by itself.
+pub(super) fn noisy_logs(logs: &[Conditioned], found: &Estimate) -> Vec<(String, f64)> {
+    let both = logs.iter().zip(&found.noise_of_logs);
+    let noisy = both.filter(|(_, one)| logs.len() > 1 && one.share > MOST);
+    noisy.map(|(log, one)| (log.file.clone(), one.share)).collect()
 }
 
 /// The logs for an estimate of which noise does not make most; all if it does of all.

@@ -2,7 +2,7 @@
 
 use super::condensed::{Condensed, Rows};
 use super::errors::{Errors, FEWEST_PARTS, Problem};
-use super::half_cutoff::Change;
+use super::half_cutoff::{HalfCutoff, widen};
 use super::instruments;
 use super::left_out::{LeftOut, SlowRows};
 use super::likelihood;
@@ -83,8 +83,8 @@ pub struct Estimate {
     pub noise_bias: DVector<f64>,
     /// The largest share of noise of the positions in what the columns say of a direction of phi.
     pub noise_share: f64,
-    /// What changes with half the cutoff of the filter; none where that cannot be told.
-    pub change: Option<Change>,
+    /// How listed parameters change with half the cutoff of the filter; none where that cannot be told.
+    pub change: Option<Vec<HalfCutoff>>,
     /// What noise of the positions of each log does by itself; nothing of instrumental variables.
     pub noise_of_logs: Vec<NoiseOfLog>,
     /// For each log the standard deviation of each joint's residuals [N m, N]; 0 where no torque
@@ -139,7 +139,7 @@ pub fn estimate(
     let (mut covariance, degrees_of_freedom) = fit.errors(model, &first, covariance);
     let mut change = fit.change(model, rows, &first);
     if let Some(change) = &mut change {
-        change.widen(model, &mut covariance);
+        widen(change, model, &mut covariance);
     }
     Ok(Estimate { covariance, degrees_of_freedom, change, ..first })
 }

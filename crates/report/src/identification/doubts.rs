@@ -3,7 +3,7 @@
 use denavit_identify::estimate::{
     ContradictingJoint, ContradictingLog, IdentifiedParameter, Likeness, Standing, Unexplained,
 };
-use denavit_identify::{Identification, LeftOutRows, NoisyLog};
+use denavit_identify::{Identification, LeftOutRows};
 
 /// Parameters that are named, at most.
 const LISTED: usize = 6;
@@ -220,12 +220,11 @@ fn unexplained(one: &Unexplained) -> String {
 }
 
 /// A log of which noise makes most, beside others.
-fn noisy_log(one: &NoisyLog) -> String {
+fn noisy_log((file, share): &(String, f64)) -> String {
     format!(
-        "Noise of the positions makes up to {:.0} % of what {} shows of the parameters by itself. \
-         Its rows count as little as that noise says.",
-        100.0 * one.share,
-        one.file
+        "Noise of the positions makes up to {:.0} % of what {file} shows of the parameters by \
+         itself. Its rows count as little as that noise says.",
+        100.0 * share
     )
 }
 

@@ -7,7 +7,7 @@
 mod text;
 
 use super::condensed::{Condensed, PARTS, part_length, plain};
-use super::half_cutoff::SAMPLES;
+use super::half_cutoff::{SAMPLES, widen};
 use super::least_squares::{Estimate, Fit, Method, Options};
 use super::left_out::{LeftOut, SlowRows};
 use super::rows::BlockMaker;
@@ -272,7 +272,7 @@ impl Estimate {
         let halved = rows.halved.clone();
         let mut change = fit.change_of(model, halved, &found.weights, &found);
         if let Some(change) = &mut change {
-            change.widen(model, &mut found.covariance);
+            widen(change, model, &mut found.covariance);
         }
         Ok(Self {
             noise_bias: self.noise_bias,

@@ -83,7 +83,8 @@ pub struct Estimate {
     pub noise_bias: DVector<f64>,
     /// The largest share of noise of the positions in what the columns say of a direction of phi.
     pub noise_share: f64,
-    /// How listed parameters change with half the cutoff of the filter; none where that cannot be told.
+    /// How listed parameters change with half the cutoff of the filter; none where that cannot be
+    /// told.
     pub change: Option<Vec<HalfCutoff>>,
     /// What noise of the positions of each log does by itself; nothing of instrumental variables.
     pub noise_of_logs: Vec<NoiseOfLog>,

@@ -161,7 +161,7 @@ impl Estimated {
     /// Whether a log for validation needs a lower filter, if it is not the motion that is too fast
     /// for the one that it has.
     pub fn is_noisy(&self, model: &RegressionModel, log: &Conditioned) -> bool {
-        let noise = noise_in_torques(model, &[log], self.found.solution.phi.as_slice());
+        let noise = noise_in_torques(model, log, self.found.solution.phi.as_slice());
         noise.into_iter().any(|share| share > NOISY)
     }
 

@@ -21,7 +21,7 @@ mod window;
 pub use misreading::{ExchangedColumns, Misreading};
 pub use weigh::GivenValues;
 
-use crate::estimate::noise_in_torques;
+use crate::estimate::noise_of_positions;
 use denavit_evidence::policy::NOTHING_LIKE;
 use denavit_measure::JointIndex;
 use denavit_measure::condition::Conditioned;
@@ -168,7 +168,7 @@ fn misread_as_filtered(
     let latest = (policy::LATEST_S / step_s).min(shortest as f64 / 8.0) as isize;
     let beliefs = Beliefs::new(model, values);
     let given = beliefs.values.as_ref();
-    let noise = given.map(|phi| noise_in_torques(model, logs, phi.as_slice()));
+    let noise = given.map(|phi| noise_of_positions(model, logs, phi.as_slice()));
     let joints = model.joints.len();
     let readings = 3 * joints * joints / 2 + 20 * joints + 30;
     let [fewest, most] = policy::SAMPLES;

@@ -5,7 +5,7 @@ use super::policy;
 use super::reading::{Reading, hypotheses};
 use super::sample::Sample;
 use super::weigh::{Beliefs, Believed, Noise, Shares, Trust, together};
-use crate::estimate::noise_in_torques;
+use crate::estimate::noise_of_positions;
 use denavit_evidence::policy::NAMED;
 use denavit_measure::JointIndex;
 use denavit_measure::condition::Conditioned;
@@ -93,7 +93,7 @@ impl Search<'_> {
         self.noise[1] = vec![0.0; model.joints.len()];
         let estimate = self.straight(&straight).all.pop().expect("values are off in some way");
         let left = self.sample.left_by(&straight, &estimate.phi);
-        let made = noise_in_torques(model, logs, estimate.phi.as_slice());
+        let made = noise_of_positions(model, logs, estimate.phi.as_slice());
         for (joint, made) in made.into_iter().enumerate() {
             let by_values = self.noise[0].get(joint).copied().unwrap_or(0.0);
             self.noise[1][joint] = made.max(by_values).min(left[joint].unwrap_or(0.0));

@@ -52,6 +52,7 @@ pub use least_squares::{Estimate, Method, Options, estimate};
 pub use left_out::SlowRows;
 pub(crate) use left_out::{biased_frictions, is_biased};
 pub(crate) use left_over::lacking;
+pub(crate) use likelihood::noise_of_positions;
 pub use noise_bias::NoiseOfLog;
 pub(crate) use noise_bias::noise_in_torques;
 pub(crate) use nominal::{is_of_joints, nominal_values};

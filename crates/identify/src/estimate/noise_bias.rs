@@ -11,11 +11,12 @@ use super::condensed::{RowFactors, Rows};
 use super::least_squares::Estimate;
 use super::left_out::{LeftOut, NumberedLog};
 use super::rows::{Block, BlockMaker};
+use super::validate::validate;
 use denavit_measure::condition::{Conditioned, Piece};
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_numerics::Random;
 use denavit_numerics::least_squares::{Solution, solve};
-use denavit_plants::regression::RegressionModel;
+use denavit_plants::regression::{RegressionJoint, RegressionModel};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -140,29 +141,22 @@ pub(super) fn noise_squares(
     squares
 }
 
-/// How much of each joint's torque in logs noise of their positions makes with phi, root of mean
+/// How much of each joint's torque in a log noise of its positions makes with phi, root of mean
 /// square over root of mean square; 0 where none was measured.
 pub(crate) fn noise_in_torques(
     model: &RegressionModel,
-    logs: &[&Conditioned],
+    log: &Conditioned,
     phi: &[f64],
 ) -> Vec<f64> {
-    let phi = DVector::from_column_slice(phi);
-    let mut sums = vec![[0.0; 2]; model.joints.len()];
-    for &log in logs {
-        let all = LeftOut::none(std::slice::from_ref(log));
-        let own = NumberedLog { number: LogIndex(0), log };
-        let noise = noise_squares(model, own, &all, &phi);
-        for ((sums, noise), torque) in sums.iter_mut().zip(noise).zip(&log.torque) {
-            let torque = torque.as_ref().map_or(&[][..], |torque| &torque[log.range.clone()]);
-            let squares = torque.iter().map(|torque| torque * torque).sum::<f64>();
-            sums[0] += noise;
-            sums[1] += squares / torque.len().max(1) as f64 * log.samples() as f64;
-        }
-    }
-    let share =
-        |[noise, torque]: [f64; 2]| if torque > 0.0 { (noise / torque).sqrt() } else { 0.0 };
-    sums.into_iter().map(share).collect()
+    let all = LeftOut::none(std::slice::from_ref(log));
+    let own = NumberedLog { number: LogIndex(0), log };
+    let noise = noise_squares(model, own, &all, &DVector::from_column_slice(phi));
+    let left = validate(model, phi, &[log]);
+    let share = |(joint, noise): (&RegressionJoint, f64)| {
+        let torque = left.joint(&joint.name)?.torque_rms;
+        (torque > 0.0).then(|| (noise / log.samples() as f64).sqrt() / torque)
+    };
+    model.joints.iter().zip(noise).map(|both| share(both).unwrap_or(0.0)).collect()
 }
 
 /// Calls `visit` with blocks of a log, of which so many samples are looked at before decimation:

@@ -3,7 +3,7 @@
 
 use super::least_squares::Estimate;
 use super::left_over::Left;
-use super::noise_bias::noise_in_torques;
+use super::likelihood::noise_of_positions;
 use super::rows::BlockMaker;
 use super::validate::{Validation, validate};
 use crate::policy::unexplained::{
@@ -109,7 +109,7 @@ pub fn unexplained_joints(
     let phi = judged.found.solution.phi.as_slice();
     let together: Vec<&Conditioned> = shown.iter().map(|&log| &logs[log.0]).collect();
     // a joint that moves may be left with nothing but noise of the positions
-    let noise = noise_in_torques(model, &together, phi);
+    let noise = noise_of_positions(model, &together, phi);
     let least: Vec<f64> = noise.iter().map(|noise| (OF_NOISE * noise).max(LEFT)).collect();
     let mut all = moving(model, &together, judged, &least);
     let not_noise = vec![f64::INFINITY; noise.len()];

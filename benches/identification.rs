@@ -2,10 +2,11 @@
 //!
 //! `cargo bench --bench identification` prints a table. One thread; the best of five runs.
 
-use denavit::identify::estimate::{Condensed, Options, Triangle, estimate};
+use denavit::identify::estimate::{Condensed, Options, estimate};
 use denavit::measure::condition::Conditioned;
 use denavit::model;
 use denavit::numerics::Random;
+use denavit::numerics::least_squares::Triangle;
 use denavit::plants::regression::{RegressionModel, RegressionRows};
 use denavit::regressor::{RegressorOptions, Unknowns};
 use denavit::shipped;

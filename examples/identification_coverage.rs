@@ -2,10 +2,11 @@
 //! cover the true values of table 3.4, and whether standard errors are as large as estimates
 //! scatter. `cargo run --release --example identification_coverage [REPETITIONS]`
 
-use denavit::identify::estimate::{Options, estimate, interval_factor};
+use denavit::identify::estimate::{Options, estimate};
 use denavit::measure::condition::{Conditioned, Conditioning, Filter};
 use denavit::measure::log::{JointSignals, MeasuredLog};
 use denavit::model;
+use denavit::numerics::interval_factor;
 use denavit::plants::regression::RegressionModel;
 use denavit::regressor::RegressorOptions;
 use denavit::shipped;

@@ -46,14 +46,14 @@ enum Format {
     #[value(alias = denavit::simulate::scenario::CONTROLLER_FORMAT)]
     Controller,
     /// Weighings and held postures
-    #[value(alias = denavit::identify::STATICS_FORMAT)]
+    #[value(alias = denavit::workflow::STATICS_FORMAT)]
     Statics,
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let trajectory = denavit::simulate::scenario::trajectory_schema();
     let controller = denavit::simulate::scenario::controller_schema();
-    let statics = denavit::identify::statics_schema();
+    let statics = denavit::workflow::statics_schema();
     let schema = match arguments.format {
         Format::Model => denavit::model::schema(),
         Format::Effect => denavit::effect::schema(),

@@ -2,8 +2,8 @@
 //! alone, then revealed beside the answer.
 
 use super::{Document, Written, referred};
-use denavit::identify::{NewEffect, NewPlace, with_effects};
 use denavit::numerics::Random;
+use denavit::plants::model_text::{NewEffect, NewPlace, with_effects};
 use denavit::report::{paragraph, short};
 use denavit::shipped;
 use denavit::simulate::scenario::ScenarioError;

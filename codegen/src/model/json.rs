@@ -49,13 +49,22 @@ impl<'a> Json<'a> {
     pub fn offset<'k>(&self, path: impl IntoIterator<Item = &'k str>) -> usize {
         let mut value = self;
         for part in path {
-            let Value::Object(entries) = &value.value else { break };
-            match entries.iter().find(|(key, _)| key == part) {
-                Some((_, entry)) => value = entry,
+            match value.get(part) {
+                Some(entry) => value = entry,
                 None => break,
             }
         }
         value.start
+    }
+
+    /// The value of a key; none of what is no object, or has no such key.
+    pub fn get(&self, key: &str) -> Option<&Self> {
+        self.entries().iter().find(|(own, _)| own == key).map(|(_, value)| value)
+    }
+
+    /// The values of a list; nothing of what is none.
+    pub fn items(&self) -> &[Self] {
+        if let Value::List(items) = &self.value { items } else { &[] }
     }
 
     /// The keys of an object's entries with the offsets of their values.

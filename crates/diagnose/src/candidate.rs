@@ -4,9 +4,9 @@ use super::law::Law;
 use crate::policy::candidate::{LIMITS, PLACES};
 use denavit_codegen::effect::{Effect, EffectSite, Occurrence};
 use denavit_evidence::policy;
-use denavit_identify::NewPlace;
 use denavit_measure::JointIndex;
 use denavit_plants::effect::LawParameter;
+use denavit_plants::model_text::NewPlace;
 use std::f64::consts::TAU;
 
 /// An effect in one place.

@@ -10,14 +10,12 @@ use denavit_codegen::effect::{Effect, read_estimated_model, read_model};
 use denavit_codegen::model::{LinkId, Robot};
 use denavit_codegen::number::parse_decimal;
 use denavit_identify::forward::{Forward, LONGEST_S, MotionLog, Windows, in_windows};
-use denavit_identify::{
-    EffectValues, NewEffect, NewValue, undo_logged_torques, undo_readings, updated_text,
-    with_effects,
-};
+use denavit_identify::{undo_logged_torques, undo_readings};
 use denavit_measure::condition::Filter;
 use denavit_measure::log::MeasuredLog;
 use denavit_measure::{JointIndex, Split};
 use denavit_plants::effect::apart;
+use denavit_plants::model_text::{EffectValues, NewEffect, NewValue, with_effects, with_values};
 use denavit_plants::{PlantModel, plant_of};
 
 /// How far simulated motions run away from measured ones.
@@ -210,5 +208,5 @@ fn moved_numbers(nominal: &Nominal<'_>, z: &[f64], text: &str) -> Option<String>
         Some(NewValue { parameter, value, std: None })
     };
     let values: Vec<NewValue<'_>> = nominal.uncertain.iter().zip(z).filter_map(of).collect();
-    updated_text(text, &values)
+    with_values(text, &values)
 }

@@ -3,16 +3,14 @@
 use super::doubt::{GivenValues, MisreadColumns, misread_apart, misread_columns};
 use super::error::Error;
 use super::estimate::{
-    Consistent, ContradictingLog, Convergence, Estimate, IdentifiedParameter, Judgement, Options,
-    ShownLogs, SlowRows, Standing, Status, Unexplained, Validation, biased_frictions, consistent,
-    contradicting_held_out, contradicting_logs, convergence, estimate, exceeding_joints,
-    filter_errors, long_enough, noise_in_torques, parameters, unexplained_joints, validate,
+    Consistent, ContradictingLog, Convergence, Estimate, HeldOut, IdentifiedParameter, Judgement,
+    Options, ShownLogs, SlowRows, Standing, Status, Unexplained, Validation, biased_frictions,
+    consistent, contradicting_logs, convergence, estimate, filter_errors, lacking, long_enough,
+    noise_in_torques, parameters, unexplained_joints, validate,
 };
-use super::lacking::{lacking, other_robot, said};
-use super::no_bodies::no_bodies;
-use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
+use super::noisy_logs::{MOST, biased_alone, biasing_logs, noisy_logs, shown_logs};
 use super::odd_log::odd_log;
-use crate::policy::identification::{NOISY, SHORT, SMEARED};
+use crate::policy::identification::{FAR, NOISY, OTHER, SHORT, SMEARED};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex};
 use denavit_plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
@@ -50,8 +48,8 @@ pub struct Identification {
     /// Logs for the estimate that contradict the others, and those for validation that contradict
     /// the logs for the estimate.
     pub contradicting_logs: Vec<ContradictingLog>,
-    /// Logs of several for the estimate of which noise of the positions makes most.
-    pub noisy_logs: Vec<NoisyLog>,
+    /// Logs of several for the estimate of which noise of the positions makes most, and its share.
+    pub noisy_logs: Vec<(String, f64)>,
     /// The joint of whose torque the filter makes most by itself, since the motion is too fast for
     /// it, and how much: a share of its root of mean square.
     pub filter_error: Option<(String, f64)>,
@@ -88,9 +86,6 @@ pub struct LeftOutRows {
     pub left: f64,
 }
 
-/// Parameters that are named, at most.
-const LISTED: usize = 6;
-
 impl Identification {
     /// Whether noise makes most of what the motion shows of some parameters: what is found says
     /// neither how far they are off nor whether columns are what they are taken for.
@@ -98,139 +93,19 @@ impl Identification {
         self.estimate.noise_share > MOST
     }
 
-    /// What is to be said if noise of the positions biases the parameters.
-    fn bias(&self) -> Option<String> {
-        if self.is_noise() {
-            let short = match self.periods < SHORT {
-                true => "The logs are too short for it: ",
-                false => "",
-            };
-            return Some(format!(
-                "{short}Noise of the positions makes up to {:.0} % of what the motion shows of the \
-                 parameters. How far they are off cannot be told, nor whether columns are other \
-                 ones than they are taken for. A filter with a lower cutoff (`conditions.filter`) \
-                 has less \
-                 of it; so has a longer or faster motion, or one of all joints at once.",
-                100.0 * self.estimate.noise_share
-            ));
-        }
-        let own = |one: &IdentifiedParameter| Some((one.name.clone(), one.noise_bias?));
-        let all = self.parameters.iter().filter(|one| one.is_biased());
-        let biased =
-            listed(all.filter_map(own).collect(), |(name, bias)| format!("{name} by {bias:.1}"));
-        biased.map(|biased| {
-            format!(
-                "Noise of the positions biases parameters, in standard errors: {biased}. Their \
-                 intervals hold less often than they say. A filter with a lower cutoff \
-                 (`conditions.filter`) \
-                 has less of it, or `options.method=iv` none."
-            )
-        })
-    }
-
-    /// What is to be said if parameters change with half the cutoff by more than chance.
-    fn changed(&self) -> Option<String> {
-        if self.is_noise() {
-            return None; // it has been said, and errors count too little of it
-        }
-        let times = |one: &IdentifiedParameter| {
-            let by = one.std? / one.half_cutoff?.own_std;
-            Some((one.name.clone(), by))
-        };
-        let all = self.parameters.iter().filter(|one| one.is_changed());
-        let wider = listed(all.filter_map(times).collect(), |(name, by)| format!("{name} {by:.1}"));
-        wider.map(|wider| {
-            format!(
-                "Parameters change with half the cutoff of the filter by more than chance. That is \
-                 in their errors, which are wider than chance alone makes them, so many times: \
-                 {wider}. A loop closed over the encoder of the log makes such a change, since its \
-                 motion answers the noise (`options.method=iv` is for that), and so may what the \
-                 model \
-                 lacks. `conditions.filter` with a lower cutoff has less of it."
-            )
-        })
-    }
-
-    /// What is to be said if the filter itself makes a part of the torques.
-    fn smeared(&self) -> Option<String> {
-        let (joint, share) = self.filter_error.as_ref()?;
-        Some(format!(
-            "The filter by itself makes an error of {:.1} % of the torque of {joint}: the motion \
-             is too fast for it, or has too few samples a second. Parameters are biased, and their \
-             intervals too narrow. `conditions.filter` with a higher cutoff makes less of it.",
-            100.0 * share
-        ))
-    }
-
-    /// What is to be said of rows that do not count, and of what is left of the others.
-    pub fn notes(&self) -> Vec<String> {
-        let lacking = said(&self.lacking).filter(|_| !self.is_noise());
-        self.rows_left_out().into_iter().chain(lacking).collect()
-    }
-
-    fn rows_left_out(&self) -> Option<String> {
-        let of = |one: &LeftOutRows| {
-            let left = 100.0 * one.left;
-            format!(
-                "{} of {} samples of {}, whose others leave {left:.2} %",
-                one.samples, one.of, one.joint
-            )
-        };
-        let listed: Vec<String> = self.left_out.iter().map(of).collect();
-        (!listed.is_empty()).then(|| {
-            format!(
-                "Left out of the estimate, since the joint turns round or is slow there, where \
-                 friction is not the sign of its velocity: {}. Residuals of the tables are those \
-                 of all samples. `options.slow=off` keeps them all.",
-                listed.join("; ")
-            )
-        })
-    }
-
-    /// All that is to be said before anybody believes the parameters.
-    pub fn warnings(&self) -> Vec<String> {
-        let misread = self.misread.iter().map(|one| {
-            let accepted = if one.is_sure { "Accepted: " } else { "Perhaps " };
-            let hint = one.hint();
-            format!("{accepted}{} ({hint}).", one.summary())
-        });
-        let reversals = self.reversals.iter().map(|(joint, share)| {
-            format!(
-                "Coulomb friction of {joint} is uncertain, by more than its error says: {:.0} % of \
-                 samples are within the filter's time of a reversal, or as slow, and count. \
-                 `options.slow` leaves them out, as far as other samples are there; \
-                 `options.friction=tanh` \
-                 has another law there.",
-                100.0 * share
-            )
-        });
-        // where noise makes most, that is why
-        let unexplained = self.unexplained.iter().filter(|_| !self.is_noise());
-        let unexplained = unexplained.map(Unexplained::to_string);
-        let noisy_logs = self.noisy_logs.iter().filter(|_| !self.is_noise());
-        let noisy_logs = noisy_logs.map(NoisyLog::to_string);
-        let contradicting = self.contradicting_logs.iter().filter(|_| !self.is_noise());
-        misread
-            .chain(contradicting.map(ContradictingLog::to_string))
-            .chain(unexplained)
-            .chain(self.bias())
-            .chain(noisy_logs)
-            .chain(self.changed())
-            .chain(self.smeared())
-            .chain(reversals)
-            .chain(other_robot(self.before))
-            .chain(self.no_bodies())
-            .collect()
+    /// Whether the logs are short for their filters.
+    pub fn is_short(&self) -> bool {
+        self.periods < SHORT
     }
 
     /// Whether the model's own values leave far more than there is.
     pub fn is_of_other_robot(&self) -> bool {
-        other_robot(self.before).is_some()
+        self.before.is_some_and(|before| before > OTHER)
     }
 
-    /// That the nearest bodies are far from the estimate; none if noise makes most of it.
-    pub fn no_bodies(&self) -> Option<String> {
-        no_bodies(self.consistent.distance).filter(|_| !self.is_noise())
+    /// Whether the nearest bodies are far from the estimate, and noise does not make most of it.
+    pub fn is_of_no_bodies(&self) -> bool {
+        self.consistent.distance > FAR && !self.is_noise()
     }
 
     /// The names of parameters that the motion does not show.
@@ -238,15 +113,6 @@ impl Identification {
         let hidden = self.parameters.iter().filter(|one| one.status == Status::NotExcited);
         hidden.map(|one| one.name.as_str()).collect()
     }
-}
-
-/// The largest of some numbers with names, and how many others there are; none without any.
-fn listed(mut all: Vec<(String, f64)>, text: impl Fn(&(String, f64)) -> String) -> Option<String> {
-    all.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let named: Vec<String> = all.iter().take(LISTED).map(text).collect();
-    let more = all.len().saturating_sub(LISTED);
-    let more = if more > 0 { format!(" and {more} others") } else { String::new() };
-    (!all.is_empty()).then(|| format!("{}{more}", named.join(", ")))
 }
 
 /// An estimate before anything is judged by it but its filters.
@@ -329,8 +195,9 @@ impl Estimated {
         };
         let together: Vec<&Conditioned> = judging.iter().map(|&log| &judges[log.0]).collect();
         let left_together = validate(model, phi, &together);
-        contradicting_logs.extend(contradicting_held_out(model, train, held_out, &found, options));
-        let exceeding = exceeding_joints(model, held_out, &found, options, &counted);
+        let others = HeldOut::new(model, held_out, &found, options);
+        let contradicting = others.iter().flat_map(|others| others.contradicting(train, options));
+        contradicting_logs.extend(contradicting);
         let judgement = Judgement { found: &found, left: &left_together, counted: &counted };
         let judging_logs = ShownLogs { logs: judges, shown: &judging };
         let mut unexplained = unexplained_joints(model, judging_logs, judgement);
@@ -339,8 +206,8 @@ impl Estimated {
             contradicting_logs.iter().any(contradicts)
                 || unexplained.iter().any(|other| other.joint == one.joint)
         };
-        let exceeding: Vec<Unexplained> =
-            exceeding.into_iter().filter(|one| !is_told(one)).collect();
+        let exceeding = others.iter().flat_map(|others| others.exceeding(&counted));
+        let exceeding: Vec<Unexplained> = exceeding.filter(|one| !is_told(one)).collect();
         unexplained.extend(exceeding);
         Identification {
             unexplained,
@@ -348,7 +215,7 @@ impl Estimated {
             reversals: reversals(model, train, &found, options),
             left_out: left_out(model, train, &found, &counted),
             contradicting_logs,
-            noisy_logs: noisy_logs(model, train, &found),
+            noisy_logs: noisy_logs(train, &found),
             lacking: lacking(model, train_logs, &found, &torques),
             periods: train.iter().map(Conditioned::periods).sum(),
             parameters: listed,
@@ -374,10 +241,8 @@ pub(super) fn shares(model: &RegressionModel, found: &Estimate, left: &Validatio
 
 /// Root of mean square of each joint's torque; 0 where none was measured.
 fn torques(model: &RegressionModel, left: &Validation) -> Vec<f64> {
-    let of_joint = |joint: &RegressionJoint| {
-        let found = left.joints.iter().find(|one| one.name == joint.name);
-        found.map_or(0.0, |one| one.torque_rms)
-    };
+    let of_joint =
+        |joint: &RegressionJoint| left.joint(&joint.name).map_or(0.0, |one| one.torque_rms);
     model.joints.iter().map(of_joint).collect()
 }
 
@@ -430,7 +295,7 @@ fn filter_error(
 ) -> Option<(String, f64)> {
     let names = model.joints.iter().map(|joint| joint.name.clone());
     let is_large = |(name, share): &(String, f64)| {
-        let left = left.joints.iter().find(|one| one.name == *name);
+        let left = left.joint(name);
         *share > SMEARED[0] && left.is_some_and(|left| *share > SMEARED[1] * left.relative)
     };
     let all = names.zip(filter_errors(model, logs, phi)).filter(is_large);

@@ -17,18 +17,11 @@ pub fn leave_out_idle_motors(model: &RegressionModel, log: &mut Conditioned) -> 
         return resting;
     }
     // rows, torque and load, their squares and their product
-    let mut sums = vec![[0.0; 6]; resting.len()];
-    BlockMaker::new(model, log).for_each(|block| {
-        for (&joint, sums) in resting.iter().zip(&mut sums) {
-            let own: Vec<f64> = model.pattern()[joint.0].iter().map(|&at| values[at]).collect();
-            let Some(left) = block.residual(joint, &own) else { continue };
-            let Some([_, target]) = &block.torque[joint.0] else { continue };
-            for (left, torque) in left.into_iter().zip(target) {
-                let load = torque - left;
-                let own = [1.0, *torque, load, torque * torque, load * load, torque * load];
-                sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
-            }
-        }
+    let mut sums = vec![[0.0; 6]; model.joints.len()];
+    BlockMaker::new(model, log).for_each_left(&values, |joint, _, [_, torque, left]| {
+        let load = torque - left;
+        let own = [1.0, torque, load, torque * torque, load * load, torque * load];
+        sums[joint.0].iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
     });
     let is_idle = |[rows, torque, load, torques, loads, both]: [f64; 6]| {
         let rounding = ROUNDING * torques;
@@ -37,8 +30,8 @@ pub fn leave_out_idle_motors(model: &RegressionModel, log: &mut Conditioned) -> 
         let is_alike = torques > rounding && both * both > ALIKE.powi(2) * torques * loads;
         torques < FOLLOWS.powi(2) * loads && !is_alike
     };
-    let idle = resting.into_iter().zip(sums).filter(|(_, sums)| is_idle(*sums));
-    let idle: Vec<JointIndex> = idle.map(|(joint, _)| joint).collect();
+    let idle: Vec<JointIndex> =
+        resting.into_iter().filter(|joint| is_idle(sums[joint.0])).collect();
     idle.iter().for_each(|&joint| log.torque[joint.0] = None);
     idle
 }

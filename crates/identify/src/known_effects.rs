@@ -11,11 +11,8 @@ use denavit_codegen::effect::{Channel, EffectSite, SpringSide};
 use denavit_measure::condition::{Butterworth, Conditioned, STENCIL};
 use denavit_measure::log::MeasuredLog;
 use denavit_plants::effect::{AddedLaw, Drive, EffectLaw, JointSamples};
-use denavit_plants::regression::{RegressionModel, RegressionRows, StandardParameter};
+use denavit_plants::regression::{RegressionModel, StandardParameter};
 use std::ops::Range;
-
-/// Samples that are evaluated at once.
-const BLOCK: usize = 512;
 
 /// Undoes laws of logged positions and rates.
 pub fn undo_readings(log: &mut MeasuredLog, laws: &[AddedLaw]) {
@@ -217,26 +214,7 @@ fn phi_of(model: &RegressionModel, of_bodies: bool) -> Vec<f64> {
 
 /// The torques of the bodies alone, with the values that the model gives [N m, N].
 fn loads(model: &RegressionModel, motion: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let phi = phi_of(model, true);
-    let own: Vec<Vec<f64>> = model
-        .pattern()
-        .iter()
-        .map(|places| places.iter().map(|&place| phi[place]).collect())
-        .collect();
-    let samples = motion.first().map_or(0, Vec::len);
-    let mut found = vec![Vec::with_capacity(samples); own.len()];
-    let (mut evaluator, mut rows) = (model.evaluator(), RegressionRows::default());
-    for first in (0..samples).step_by(BLOCK) {
-        let range = first..(first + BLOCK).min(samples);
-        let block: Vec<&[f64]> = motion.iter().map(|column| &column[range.clone()]).collect();
-        evaluator.evaluate(&block, &mut rows).expect("motion has three columns for each joint");
-        let mut part = vec![0.0; range.len()];
-        for (joint, own) in own.iter().enumerate() {
-            rows.torque(joint, own, &mut part);
-            found[joint].extend_from_slice(&part);
-        }
-    }
-    found
+    model.torques(motion, &phi_of(model, true))
 }
 
 /// Central differences, one-sided at the ends.

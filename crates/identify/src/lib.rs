@@ -1,6 +1,5 @@
 //! Identification: from motion to parameters, with honest errors (thesis chapter 3).
 //!
-//! - [`add_contact_forces`], [`add_wrenches`]: what the ground, and pushes, do to each equation
 //! - [`take_out`]: effects that the model has beside its equations, taken out of logs
 //! - [`leave_out_idle_motors`]: torques of joints that a brake holds
 //! - [`estimate`]: base parameters with their errors, and what they leave unexplained
@@ -8,42 +7,27 @@
 //! - [`two_stage`]: springs and motors of series elastic drives first, then the load
 //! - [`forward`]: the identified model in motion against a log
 //! - [`identify`]: all of it at once
-//! - [`updated_model`], [`model_values`], [`updated_text`]: back into the model file
-//! - [`statics`], [`read_statics`]: what weighings and held postures say
-//! - [`knowledge`]: equations of parameters from all sources, joined, and what follows from them
+//! - [`updated_model`]: back into the model file
+//! - [`statics`]: what weighings and held postures say
 //! - [`Error`]: why there is no answer, of all of these
 
-mod contact_forces;
 pub mod doubt;
 mod error;
 pub mod estimate;
 pub mod forward;
 mod identification;
 mod idle;
-pub mod knowledge;
 mod known_effects;
-mod lacking;
 mod long;
-mod model_text;
-mod model_values;
-mod no_bodies;
 mod noisy_logs;
 mod odd_log;
 mod policy;
 pub mod statics;
-mod statics_file;
 pub mod two_stage;
 mod updated_model;
 
-pub use contact_forces::{Ground, add_contact_forces, add_wrenches};
 pub use error::{Error, ErrorKind};
 pub use identification::{Estimated, Identification, LeftOutRows, Request, estimated, identify};
 pub use idle::leave_out_idle_motors;
 pub use known_effects::{take_out, undo_logged_torques, undo_readings};
-pub use model_text::{
-    EffectValues, NewEffect, NewPlace, NewValue, updated as updated_text, with_effects,
-};
-pub use model_values::model_values;
-pub use noisy_logs::{Added, NoisyLog};
-pub use statics_file::{STATICS_FORMAT, read_statics, statics_schema};
 pub use updated_model::{UpdatedModel, updated_model};

@@ -54,19 +54,10 @@ fn left_behind_the_head(
     told: &[Unexplained],
 ) -> Vec<Unexplained> {
     let is_base = |name: &str| model.joints.iter().any(|one| one.is_base && one.name == name);
-    let of_head = |name: &str| {
-        head.joints.iter().find(|one| one.name == name).map_or(0.0, |one| one.relative)
-    };
+    let of_head = |name: &str| head.joint(name).map_or(0.0, |one| one.relative);
     let is_left =
         |name: &str, share: f64| share > LEFT || share > LEFT_ALIKE && of_head(name) < LEFT_ALIKE;
     let own = whole.joints.iter().filter(|one| is_left(&one.name, one.relative));
     let own = own.filter(|one| !is_base(&one.name) && told.iter().all(|t| t.joint != one.name));
-    own.map(|one| Unexplained {
-        joint: one.name.clone(),
-        file: None,
-        share: one.relative,
-        rest_s: None,
-        beside: None,
-    })
-    .collect()
+    own.map(|one| Unexplained::of(&one.name, one.relative)).collect()
 }

@@ -1,67 +1,18 @@
 //! Logs of which noise of the positions makes most, and those that bias parameters by it.
 
-use super::estimate::{BIASING, Estimate, IdentifiedParameter, NoiseOfLog, Solution, solve};
+use super::estimate::{BIASING, Estimate, IdentifiedParameter, NoiseOfLog};
 pub(super) use crate::policy::noisy_logs::MOST;
 use crate::policy::noisy_logs::SHARE;
 use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
-use std::fmt;
 
-/// A log of which noise makes most, beside others.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NoisyLog {
-    /// Its name.
-    pub file: String,
-    /// The largest share of noise in what it shows of a direction of the parameters by itself.
-    pub share: f64,
-    /// What it adds.
-    pub adds: Added,
-}
-
-/// What a log adds to the others.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Added {
-    /// Without it the standard error of some parameter would be larger by this share, no other one
-    /// by more.
-    Certainty(f64),
-    /// Without it so many sums of parameters would not be shown.
-    Sums(usize),
-}
-
-impl fmt::Display for NoisyLog {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { file, share, adds } = self;
-        write!(
-            f,
-            "Noise of the positions makes up to {:.0} % of what {file} shows of the parameters by \
-             itself. Its rows count as little as that noise says: without it ",
-            100.0 * share
-        )?;
-        match adds {
-            Added::Certainty(share) => {
-                let times = 1.0 + share;
-                write!(f, "no standard error would be more than {times:.2} times as large.")
-            }
-            Added::Sums(1) => write!(f, "one sum of parameters would not be shown."),
-            Added::Sums(sums) => write!(f, "{sums} sums of parameters would not be shown."),
-        }
-    }
-}
-
-/// Of several logs those of which noise makes most.
-pub(super) fn noisy_logs(
-    model: &RegressionModel,
-    logs: &[Conditioned],
-    found: &Estimate,
-) -> Vec<NoisyLog> {
-    let noisy = |(_, one): &(usize, &NoiseOfLog)| logs.len() > 1 && one.share > MOST;
-    let of = |(log, one): (usize, &NoiseOfLog)| NoisyLog {
-        file: logs[log].file.clone(),
-        share: one.share,
-        adds: added(model, LogIndex(log), found),
-    };
-    found.noise_of_logs.iter().enumerate().filter(noisy).map(of).collect()
+/// Of several logs those of which noise makes most: the largest share of it in what each shows of a
+/// direction of the parameters by itself.
+pub(super) fn noisy_logs(logs: &[Conditioned], found: &Estimate) -> Vec<(String, f64)> {
+    let both = logs.iter().zip(&found.noise_of_logs);
+    let noisy = both.filter(|(_, one)| logs.len() > 1 && one.share > MOST);
+    noisy.map(|(log, one)| (log.file.clone(), one.share)).collect()
 }
 
 /// The logs for an estimate of which noise does not make most; all if it does of all.
@@ -70,25 +21,6 @@ pub(super) fn shown_logs(logs: usize, found: &Estimate) -> Vec<LogIndex> {
     let all = (0..logs).map(LogIndex);
     let shown: Vec<LogIndex> = all.clone().filter(|&log| share(log) <= MOST).collect();
     if shown.is_empty() { all.collect() } else { shown }
-}
-
-/// What a log adds to the others, as if residuals were independent.
-fn added(model: &RegressionModel, log: LogIndex, found: &Estimate) -> Added {
-    let mut weights = found.weights.clone();
-    weights[log.0].fill(0.0);
-    let condensed = &found.condensed;
-    let others = condensed.system(&condensed.whole(), &weights, &[]);
-    let without = solve(&others, found.solution.phi.as_slice());
-    if without.excited() < found.solution.excited() {
-        return Added::Sums(found.solution.excited() - without.excited());
-    }
-    let deviations = |solution: &Solution| -> Vec<f64> {
-        let listed = model.to_listed() * &solution.factor;
-        listed.row_iter().map(|row| row.norm()).collect()
-    };
-    let both = deviations(&without).into_iter().zip(deviations(&found.solution));
-    let larger = both.filter(|(_, with)| *with > 0.0).map(|(without, with)| without / with - 1.0);
-    Added::Certainty(larger.fold(0.0, f64::max))
 }
 
 /// For each log beside others whether it would need a lower filter if it were alone: noise makes

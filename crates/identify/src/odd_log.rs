@@ -1,7 +1,8 @@
 //! The log of several that is unlike the others.
 
-use super::estimate::{Estimate, Solution, Triangle, solve};
+use super::estimate::Estimate;
 use denavit_measure::{LogIndex, PartIndex};
+use denavit_numerics::least_squares::{Solution, Triangle, solve};
 use denavit_plants::regression::RegressionModel;
 
 /// Of several logs the one, of those that are asked, without which the others agree best, and what
@@ -17,9 +18,7 @@ pub(super) fn odd_log(
         return None;
     }
     // weighted by log, a log that is odd would count for little
-    let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
-    let by_joint: Vec<f64> = found.noise_of_joints().into_iter().map(weight).collect();
-    let weights = vec![by_joint; condensed.independent.len()];
+    let weights = vec![found.weights_of_joints(); condensed.independent.len()];
     let without = |log: LogIndex| {
         let parts = (0..condensed.parts.len()).map(PartIndex);
         let others = parts.filter(|part| condensed.log_of_part[part.0] != log);

@@ -1,14 +1,6 @@
 //! The numbers that decide estimates and what is said of them, each with its unit and where it is
 //! from: those of each module. Doubts have a table of their own.
 
-/// `contact_forces.rs`: Robots that are pushed from outside: what contact forces, and wrenches on
-/// links, do to each equation (thesis 3.3, 5.2.1).
-pub(crate) mod contact_forces {
-    /// Half the distance of differences [rad, m]: of order 4, so that rounding and what is left of
-    /// the Taylor series are both about 1e-13.
-    pub(crate) const DIFFERENCE: f64 = 1e-3;
-}
-
 /// `estimate/bounds.rs`: Masses and moments of inertia that a model's file writes as expressions:
 /// none may be negative.
 pub(crate) mod bounds {
@@ -32,9 +24,6 @@ pub(crate) mod consistent {
 
     /// Weights of what entries of bodies fall short of, one after the other until nothing does.
     pub(crate) const BOUND_WEIGHTS: [f64; 4] = [1e2, 1e4, 1e6, 1e8];
-
-    /// The smallest eigenvalue of a pseudo-inertia to start from, over its trace.
-    pub(crate) const LEAST_SHARE: f64 = 1e-4;
 
     /// The least share of its value in the file that a positive number of it keeps.
     pub(crate) const LEAST_OF: f64 = 1e-6;
@@ -80,17 +69,10 @@ pub(crate) mod errors {
 
     /// A larger share of what is known of a direction is taken for this one.
     pub(crate) const MOST_LEVERAGE: f64 = 0.95;
-
-    /// The normal deviate below which one of twenty lies.
-    pub(crate) const ONE_OF_TWENTY: f64 = -1.644_853_626_951;
-
-    /// Neighbouring parts are taken to be no more alike than this.
-    pub(crate) const MOST_ALIKE: f64 = 0.8;
 }
 
-/// `estimate/exceeding.rs`: Joints of whose torque far more is left in a log for validation than
-/// anything explains.
-pub(crate) mod exceeding {
+/// `estimate/held_out.rs`: Logs for validation held against those for the estimate.
+pub(crate) mod held_out {
     /// What is left must be this share of a joint's torque, as root of mean square,
     pub(crate) const OF_TORQUE: f64 = 0.05;
 
@@ -155,6 +137,9 @@ pub(crate) mod left_over {
     /// Noise is another one after half a period of the filter's cutoff: what is left is still
     /// correlated with itself by so much if it is none.
     pub(crate) const NO_NOISE: f64 = 0.5;
+
+    /// The share of a joint's torque from which on it is said that something is left that is none.
+    pub(crate) const SAID: f64 = 0.005;
 }
 
 /// `estimate/likelihood.rs`: Noise on both sides: what noise of the positions does to the residual
@@ -212,18 +197,6 @@ pub(crate) mod robust {
 
     /// See [`HUBER`].
     pub(crate) const BISQUARE: f64 = 4.685;
-}
-
-/// `estimate/solve.rs`: Least squares of condensed rows, and which directions of phi they say
-/// nothing about.
-pub(crate) mod solve {
-    /// A direction is not excited if its singular value, of columns scaled to length 1, is below
-    /// this share of the largest.
-    pub(crate) const DEAD: f64 = 1e-9;
-
-    /// Rows count no more than this, so that squares of what is weighted are numbers: torques of
-    /// 1e-160 have other squares than they can have.
-    pub(crate) const MOST_WEIGHT: f64 = 1e100;
 }
 
 /// `estimate/long/text.rs`: Rows of a piece of a long log as JSON.
@@ -297,6 +270,14 @@ pub(crate) mod identification {
     /// The share of a torque from which on it is said what the filter makes of a motion that is
     /// too fast for it, if it is also this share of what is left.
     pub(crate) const SMEARED: [f64; 2] = [0.01, 0.3];
+
+    /// What is left with the model's own values, over the torques, from which on the robot is
+    /// another.
+    pub(crate) const OTHER: f64 = 10.0;
+
+    /// Standard errors between an estimate and the nearest bodies from which on what it is from is
+    /// doubted: good logs have next to none, misread ones any number.
+    pub(crate) const FAR: f64 = 20.0;
 }
 
 /// `idle.rs`: Motors that do not carry their joints: a brake holds them, or stiction.
@@ -311,34 +292,6 @@ pub(crate) mod idle {
     /// The share of the squares of a torque below which its variance is rounding: a constant is
     /// like nothing.
     pub(crate) const ROUNDING: f64 = 1e-9;
-}
-
-/// `knowledge.rs`: What is known of the standard parameters theta0, from any source, as linear
-/// equations with errors: A theta0 = b + e, each row divided by the standard deviation of its
-/// error.
-pub(crate) mod knowledge {
-    /// Parts of a row space below this, of the largest, are rounding.
-    pub(crate) const RANK_TOLERANCE: f64 = 1e-10;
-
-    /// Below this share of its column an entry of a reduced system is rounding.
-    pub(crate) const ROUNDING: f64 = 1e-9;
-}
-
-/// `lacking.rs`: That what is left of torques is no noise: something is not as the model has it.
-pub(crate) mod lacking {
-    /// The share of a joint's torque from which on it is said.
-    pub(crate) const SAID: f64 = 0.005;
-
-    /// What is left with the model's own values, over the torques, from which on the robot is
-    /// another.
-    pub(crate) const OTHER: f64 = 10.0;
-}
-
-/// `no_bodies.rs`: Estimates that belong to no bodies that exist.
-pub(crate) mod no_bodies {
-    /// Standard errors between an estimate and the nearest bodies from which on what it is from is
-    /// doubted: good logs have next to none, misread ones any number.
-    pub(crate) const FAR: f64 = 20.0;
 }
 
 /// `noisy_logs.rs`: Logs of which noise of the positions makes most, and those that bias

@@ -1,10 +1,9 @@
 //! The model with the identified values, as text that every command reads and as a robot.
 
-use super::error::{Error, UpdateError};
+use super::error::Error;
 use super::estimate::{Consistent, IdentifiedParameter};
-use super::model_text::{NewValue, updated};
-use super::model_values::{model_values, with_effect};
 use denavit_codegen::model::{self, About, BodyEntry, Robot, Role};
+use denavit_plants::model_text::{NewValue, with_values};
 use denavit_plants::regression::{ModelParameter, RegressionModel};
 use std::collections::BTreeMap;
 
@@ -35,7 +34,7 @@ pub fn updated_model(
         let body = robot.find_link(link).and_then(|link| robot.links[link].body);
         body.is_some_and(|body| body.about == About::Com)
     };
-    let values = model_values(model, found, &is_about_com);
+    let values = model.file_values(&found.standard, &found.own, &is_about_com);
     let estimate_of = |parameter: &ModelParameter| {
         if is_moved(parameter, &is_about_com) {
             return None;
@@ -52,7 +51,7 @@ pub fn updated_model(
         let (estimate, std) = estimate_of(parameter)?;
         ((value - estimate).abs() <= std).then_some(std)
     };
-    let effects = with_effect(model, &values);
+    let effects = model.file_values_with_effect(&values);
     let text = |is_written: &dyn Fn(usize) -> bool| {
         let all = model.parameters.iter().zip(&values).enumerate();
         let new: Vec<NewValue<'_>> = all
@@ -66,7 +65,7 @@ pub fn updated_model(
                 std: std_of(parameter, value),
             })
             .collect();
-        updated(source, &new).ok_or_else(|| UpdateError::NoPlace(model.model.clone()))
+        with_values(source, &new).ok_or_else(|| Error::no_place(&model.model))
     };
     let with_error = |(parameter, value): (&ModelParameter, &f64)| {
         Some((parameter.name.clone(), std_of(parameter, *value)?))

@@ -10,8 +10,10 @@
 //! - [`RobotFunction`]: any function of a robot, on one sample or on many, from many threads
 //! - [`WalkingFunctions`]: momentum about the centre of mass, zero-moment point and the like
 //! - [`effect`]: laws of missing physics, with derivatives by their parameters
+//! - [`body`]: coordinates of bodies that exist
 //! - [`regression`]: torques as linear functions of the base parameters, for many samples at once
 //!
+//! - [`model_text`]: new values and effects in the text of a model file, which else stays as it is
 //! - [`trajectory`]: references for joints
 //! - [`shipped`]: robots whose model files are part of the library
 //! - [`emitted`]: what the compiler made of some of them when this library was built
@@ -22,6 +24,7 @@
 //! all vectors and positions are those of the world frame.
 
 pub mod batch;
+pub mod body;
 mod cradle;
 mod derivatives;
 pub mod effect;
@@ -32,10 +35,12 @@ mod generated;
 mod laws;
 mod loaded;
 mod model;
+pub mod model_text;
 mod native;
 mod on_demand;
 mod passive_walkers;
 pub mod regression;
+mod regression_file;
 mod regression_model;
 mod regression_parameter;
 mod regression_rows;

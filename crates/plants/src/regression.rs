@@ -156,6 +156,11 @@ impl RegressionModel {
         &self.pattern
     }
 
+    /// The entries of phi that a joint's row depends on, in the order of its pattern.
+    pub fn of_joint(&self, joint: usize, phi: &[f64]) -> Vec<f64> {
+        self.pattern[joint].iter().map(|&place| phi[place]).collect()
+    }
+
     /// Joint, and place in its pattern, of each column of Coulomb friction: a factor times
     /// [`RegressionModel::law`] of the joint's rate.
     pub fn coulomb(&self) -> &[(usize, usize)] {
@@ -184,6 +189,28 @@ impl RegressionModel {
         let batch = self.native.get_or_init(|| NativeBatch::new(routine, &self.prelude));
         RegressionEvaluator::new(batch.clone(), widths, &self.known)
             .with_law(self.law, &self.coulomb)
+    }
+
+    /// The torque of every joint by phi and by what is known [N m, N], of motion in 3 n columns.
+    ///
+    /// # Panics
+    /// If there are not three columns of one length for each joint.
+    pub fn torques(&self, motion: &[Vec<f64>], phi: &[f64]) -> Vec<Vec<f64>> {
+        let own: Vec<Vec<f64>> = (0..self.joints.len()).map(|at| self.of_joint(at, phi)).collect();
+        let samples = motion.first().map_or(0, Vec::len);
+        let mut torques = vec![Vec::with_capacity(samples); own.len()];
+        let (mut evaluator, mut rows) = (self.evaluator(), RegressionRows::default());
+        for first in (0..samples).step_by(BLOCK) {
+            let range = first..(first + BLOCK).min(samples);
+            let block: Vec<&[f64]> = motion.iter().map(|column| &column[range.clone()]).collect();
+            evaluator.evaluate(&block, &mut rows).expect("three columns for each joint");
+            let mut part = vec![0.0; range.len()];
+            for (joint, own) in own.iter().enumerate() {
+                rows.torque(joint, own, &mut part);
+                torques[joint].extend_from_slice(&part);
+            }
+        }
+        torques
     }
 
     /// theta0 of values of [`RegressionModel::parameters`].
@@ -215,6 +242,17 @@ impl RegressionModel {
         self.not_negative.as_ref().map_or_else(Vec::new, |program| values_of(program, &of_name))
     }
 
+    /// M of phi = M theta0.
+    pub fn of_standard(&self) -> DMatrix<f64> {
+        let mut members = DMatrix::zeros(self.rank(), self.standard.len());
+        for (row, parameter) in self.axes.iter().enumerate() {
+            for &(column, factor) in &parameter.members {
+                members[(row, column)] += factor;
+            }
+        }
+        members
+    }
+
     /// phi of theta0.
     pub fn axes_of_standard(&self, standard: &[f64]) -> Vec<f64> {
         let sum = |parameter: &RegressionParameter| {
@@ -223,6 +261,9 @@ impl RegressionModel {
         self.axes.iter().map(sum).collect()
     }
 }
+
+/// Samples that are evaluated at once.
+const BLOCK: usize = 512;
 
 /// The base parameters with the joint parameters that the robot has.
 fn reduced(robot: &Robot, keep: &[String]) -> Result<BaseParameters, Error> {

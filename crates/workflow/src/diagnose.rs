@@ -15,7 +15,7 @@ use denavit_diagnose::{
     BeforeSprings, Candidate, Diagnosis, Experiment, Filters, Moved, Request, Spring, Verdict,
     before_springs, candidates, given_candidates, spring_candidates,
 };
-use denavit_identify::Ground;
+use denavit_measure::Ground;
 use denavit_measure::Split;
 use denavit_measure::condition::{Conditioned, Conditioning};
 use denavit_measure::log::{LogRemark, MeasuredLog};

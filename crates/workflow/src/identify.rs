@@ -10,6 +10,7 @@ mod logs;
 mod long;
 mod prior;
 mod statics;
+mod statics_file;
 mod two_stage;
 
 use crate::error::{Cause, Error};
@@ -31,6 +32,7 @@ pub use forward::{Controlled, NotMoved, SimulationGap};
 use logs::Read;
 pub use long::{LongLog, LongPlan, PieceRows, identify_long};
 pub use statics::{StaticsFound, identify_statics};
+pub use statics_file::{STATICS_FORMAT, statics_schema};
 pub use two_stage::{TwoStageFound, identify_two_stage};
 
 /// How parameters are identified.
@@ -243,7 +245,7 @@ impl Identified {
         let found = &self.found;
         let judged = found.validate.as_ref().unwrap_or(&found.train);
         let is_doubted = found.is_noise() || !found.misread.is_empty() || found.is_of_other_robot();
-        let is_doubted = is_doubted && !accepts_suspicious || found.no_bodies().is_some();
+        let is_doubted = is_doubted && !accepts_suspicious || found.is_of_no_bodies();
         let is_same =
             |(_, remark): &(String, LogRemark)| matches!(remark, LogRemark::SameAs { .. });
         let explains = !self.remarks.iter().any(is_same)

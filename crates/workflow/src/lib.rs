@@ -57,8 +57,8 @@ pub use faults::{PlacedFault, faults_of};
 pub use files::{Files, Input, ModelText, described, effects_folder, reason};
 pub use identify::{
     Conditions, Controlled, FilterChoice, Identified, IdentifyOptions, LongLog, LongPlan, NotMoved,
-    PieceRows, SimulationGap, StaticsFound, TwoStageFound, identify, identify_long,
-    identify_statics, identify_two_stage,
+    PieceRows, STATICS_FORMAT, SimulationGap, StaticsFound, TwoStageFound, identify, identify_long,
+    identify_statics, identify_two_stage, statics_schema,
 };
 pub use logs::{LogSource, Logs};
 pub use mistaken::{FileKind, Mistaken};

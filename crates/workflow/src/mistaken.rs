@@ -1,9 +1,9 @@
 //! What a file or a name is, where something else is wanted: a fault of its first key would not say
 //! that it is a good file for other work.
 
+use crate::identify::STATICS_FORMAT;
 use denavit_codegen::model::json::{self, Value};
 use denavit_codegen::{effect, model, regressor};
-use denavit_identify::STATICS_FORMAT;
 use denavit_import as import;
 use denavit_plants::shipped::{self, ShippedModel};
 use denavit_simulate::scenario;

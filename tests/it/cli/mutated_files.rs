@@ -2,7 +2,6 @@
 //! panics, whatever a byte was changed to.
 
 use denavit::effect;
-use denavit::identify::read_statics;
 use denavit::measure::log::{ColumnMapping, LogOf, read_log};
 use denavit::model::{self, Robot};
 use denavit::plants::regression::RegressionModel;
@@ -12,6 +11,7 @@ use denavit::shipped;
 use denavit::simulate::Log;
 use denavit::simulate::scenario::{read_controller, read_trajectory};
 use denavit::walk::read_scenario;
+use denavit::workflow::{IdentifyOptions, Logs, RobotFile, Silent, identify_statics};
 use proptest::prelude::*;
 use std::fmt::Display;
 use std::fs;
@@ -127,6 +127,10 @@ static ARM: LazyLock<RegressionModel> = LazyLock::new(|| {
     RegressionModel::new(&robot, modelled(&robot), &[]).expect("a model")
 });
 
+/// The same as a user has it.
+static ARM_FILE: LazyLock<RobotFile> =
+    LazyLock::new(|| RobotFile::open("planar_2r").expect("a shipped model"));
+
 /// A scenario that has much of what scenarios may have.
 const SCENARIO: &str = r#"{"format": "denavit-scenario/1", "name": "n", "model": "planar_2r",
  "parameters": {"l1": 0.4}, "duration_s": 2, "initial": {"t_s": 0, "q": {"link1": 0.1}},
@@ -186,7 +190,10 @@ proptest! {
     #[test]
     fn mappings_weighings_and_logs(changes in changes()) {
         let model = &*ARM;
-        assert_told(read_statics(FILE, &mutated(STATICS, &changes), model));
+        let (logs, options) = (Logs::default(), IdentifyOptions::default());
+        let rests = mutated(STATICS, &changes);
+        let found = identify_statics(&ARM_FILE, FILE, &rests, &logs, &options, &mut Silent);
+        assert_told(found);
         let mapping = ColumnMapping::from_json(FILE, &mutated(MAPPING, &changes));
         let log = mutated(&log(), &changes);
         assert_told(Log::from_csv(FILE, &log));

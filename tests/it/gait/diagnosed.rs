@@ -3,7 +3,7 @@
 use super::identified::walked;
 use denavit::diagnose::{Filters, Request, candidates, diagnose};
 use denavit::effect;
-use denavit::identify::Ground;
+use denavit::measure::Ground;
 use denavit::measure::log::{ColumnMapping, LogFault, LogOf, MeasuredLog, read_log};
 use denavit::numerics::Random;
 use denavit::plants::regression::RegressionModel;

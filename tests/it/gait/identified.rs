@@ -1,8 +1,8 @@
 //! A robot on the ground: what its steps say of its bodies (thesis 3.3, 5.2.1).
 
 use super::{INERTIAL, robot};
-use denavit::identify::add_contact_forces;
 use denavit::identify::estimate::{Options, Status, estimate, parameters, validate};
+use denavit::measure::add_contact_forces;
 use denavit::measure::condition::{Conditioned, Conditioning, Filter};
 use denavit::measure::log::{ColumnMapping, LogOf, MeasuredLog, read_log};
 use denavit::numerics::Random;

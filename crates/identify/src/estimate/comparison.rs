@@ -7,10 +7,10 @@ use super::least_squares::Fit;
 use super::left_out::LeftOut;
 use super::noise_bias::{NoiseOfLog, bias_of_some};
 use super::own_estimate::Tested;
-use super::solve::Solution;
 use crate::policy::comparison::APART;
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex};
+use denavit_numerics::least_squares::Solution;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 

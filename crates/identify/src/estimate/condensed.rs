@@ -5,10 +5,9 @@
 
 use super::left_out::{LeftOut, NumberedLog};
 use super::rows::{Block, BlockMaker};
-use super::solve::{PriorRow, stacked};
-use super::triangle::Triangle;
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex, PartIndex, SampleIndex};
+use denavit_numerics::least_squares::{PriorRow, Triangle, stacked};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
 use std::borrow::Cow;
@@ -60,6 +59,16 @@ struct PartsOfLog {
 }
 
 impl Condensed {
+    /// No parts yet, of logs with these shares of independent rows that stand for so long.
+    pub(super) fn without_parts(
+        (pattern, rank): (Vec<Vec<usize>>, usize),
+        independent: Vec<f64>,
+        row_s: Vec<f64>,
+    ) -> Self {
+        let (parts, log_of_part, end_s) = (Vec::new(), Vec::new(), Vec::new());
+        Self { pattern, parts, log_of_part, end_s, independent, row_s, rank }
+    }
+
     /// Condenses all rows of conditioned logs.
     pub fn new(model: &RegressionModel, logs: &[Conditioned]) -> Self {
         Self::counted(model, (logs, &LeftOut::none(logs)))
@@ -109,11 +118,10 @@ impl Condensed {
         length: usize,
         rows: RowsOf<'_>,
     ) -> Self {
-        let (parts, log_of_part, end_s) = (Vec::new(), Vec::new(), Vec::new());
         let share = |log: &Conditioned| log.independent() / log.samples().max(1) as f64;
         let independent = logs.iter().map(share).collect();
         let row_s = logs.iter().map(|log| log.step_s * log.decimation as f64).collect();
-        let mut condensed = Self { pattern, parts, log_of_part, end_s, independent, row_s, rank };
+        let mut condensed = Self::without_parts((pattern, rank), independent, row_s);
         for (number, log) in logs.iter().enumerate() {
             let number = LogIndex(number);
             // A short rest goes with the part before it.

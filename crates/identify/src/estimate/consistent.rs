@@ -1,15 +1,15 @@
 //! Bodies that exist: the parameters nearest to an estimate with positive definite pseudo-inertias,
 //! and friction and rotor inertia that are not negative.
 //!
-//! The pseudo-inertia of a body is J = L L^T with L lower triangular and of positive diagonal
-//! (log-Cholesky; Rucker, Wensing 2022), so that no step can leave the bodies that exist. What the
+//! Bodies have log-Cholesky coordinates, so that no step can leave those that exist. What the
 //! estimate says nothing about stays near where it started.
 
 use super::bounds::Bounds;
 use super::least_squares::Estimate;
-use crate::policy::consistent::{BOUND_WEIGHTS, FAR, LEAST_OF, LEAST_SHARE, STAY};
+use crate::policy::consistent::{BOUND_WEIGHTS, FAR, LEAST_OF, STAY};
+use denavit_plants::body::{log_cholesky, of_log_cholesky};
 use denavit_plants::regression::RegressionModel;
-use nalgebra::{DMatrix, DVector, Matrix4};
+use nalgebra::{DMatrix, DVector};
 
 /// Steps of the search.
 const MAX_STEPS: usize = 200;
@@ -29,8 +29,6 @@ pub struct Consistent {
     /// Values of the model's own numbers, where columns are products of them: their places in
     /// [`RegressionModel::parameters`].
     pub own: Vec<(usize, f64)>,
-    /// Steps that were made.
-    pub steps: usize,
 }
 
 /// What coordinates stand for.
@@ -47,85 +45,80 @@ enum Piece {
     Own(usize),
 }
 
-impl Piece {
-    fn len(&self) -> usize {
-        if let Self::Body(_) = self { 10 } else { 1 }
-    }
-}
-
 /// The nearest parameters of bodies that exist; `start` is theta0 of the model before.
 pub fn consistent(model: &RegressionModel, found: &Estimate, start: &[f64]) -> Consistent {
     let triangles = found.condensed.whole();
     let rank = found.condensed.rank;
     let r = found.condensed.system(&triangles, &found.weights, &[]);
     let w = r.view((0, 0), (rank, rank)).into_owned();
-    let b = members(model);
+    let b = model.of_standard();
     let target = &w * &found.solution.phi;
     // Weights are 1 over noise, or 1 where there is none: what counts is the residual's own size.
     let scale = noise_scale(&r, &target, rank);
+    let coordinates = Coordinates::of(model);
+    let first = coordinates.of_start(start);
     let mut problem = Problem {
-        model,
         jacobian: (&w * b) / scale,
         target: target / scale,
         bounds: Bounds::new(model),
         weight: 0.0,
+        coordinates,
+        first,
     };
-    let pieces = pieces(model);
-    let first = coordinates(model, &pieces, start);
-    let (mut eta, mut steps) = problem.search(&pieces, &first, &first);
-    let cost = problem.cost(&pieces, &eta, &first);
+    let mut eta = problem.search(&problem.first);
+    let cost = problem.cost(&eta);
     if cost > FAR.powi(2) * rank as f64 {
-        let (next, more) = problem.search_in_stages(&pieces, &first);
-        steps += more;
-        eta = if problem.cost(&pieces, &next, &first) < cost { next } else { eta };
+        let next = problem.search_in_stages();
+        eta = if problem.cost(&next) < cost { next } else { eta };
     }
     for weight in BOUND_WEIGHTS {
-        if problem.bounds.hold(&file_values(model, &pieces, &eta)) {
+        if problem.bounds.hold(&problem.coordinates.file_values(&eta)) {
             break;
         }
         problem.weight = weight;
-        let (next, more) = problem.search(&pieces, &eta, &first);
-        (eta, steps) = (next, steps + more);
+        eta = problem.search(&eta);
     }
-    let (theta, _) = standard(model, &pieces, &eta);
+    let (theta, _) = problem.coordinates.standard(&eta);
     let residual = &problem.target - &problem.jacobian * &theta;
     let standard = theta.as_slice().to_vec();
     let phi = model.axes_of_standard(&standard);
-    let own = own_values(model, &pieces, &eta);
+    let own = problem.coordinates.own_values(&eta);
     let distance = (residual.norm_squared() / rank.max(1) as f64).sqrt();
-    Consistent { standard, phi, distance, own, steps }
+    Consistent { standard, phi, distance, own }
 }
 
 struct Problem<'a> {
-    model: &'a RegressionModel,
     /// Of theta0.
     jacobian: DMatrix<f64>,
     target: DVector<f64>,
     bounds: Bounds<'a>,
     /// Of what entries of bodies fall short of.
     weight: f64,
+    coordinates: Coordinates<'a>,
+    /// Those of the model before, near which what nothing is said about stays.
+    first: DVector<f64>,
 }
 
 impl Problem<'_> {
-    fn cost(&self, pieces: &[Piece], eta: &DVector<f64>, first: &DVector<f64>) -> f64 {
-        let (theta, _) = standard(self.model, pieces, eta);
+    fn cost(&self, eta: &DVector<f64>) -> f64 {
+        let (theta, _) = self.coordinates.standard(eta);
         let residual = &self.target - &self.jacobian * theta;
-        let short = self.short(pieces, eta).norm_squared();
-        residual.norm_squared() + short + STAY * (eta - first).norm_squared()
+        let short = self.short(eta).norm_squared();
+        residual.norm_squared() + short + STAY * (eta - &self.first).norm_squared()
     }
 
     /// What entries of bodies fall short of, weighted.
-    fn short(&self, pieces: &[Piece], eta: &DVector<f64>) -> DVector<f64> {
+    fn short(&self, eta: &DVector<f64>) -> DVector<f64> {
         if self.weight == 0.0 {
             return DVector::zeros(0);
         }
-        let short = self.bounds.short(&file_values(self.model, pieces, eta));
+        let short = self.bounds.short(&self.coordinates.file_values(eta));
         DVector::from_vec(short) * self.weight
     }
 
     /// All residuals, and how they fall with the coordinates.
-    fn rows(&self, pieces: &[Piece], eta: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
-        let (theta, slope) = standard(self.model, pieces, eta);
+    fn rows(&self, eta: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let (theta, slope) = self.coordinates.standard(eta);
         let j = &self.jacobian * slope;
         let residual = &self.target - &self.jacobian * &theta;
         if self.weight == 0.0 {
@@ -133,64 +126,48 @@ impl Problem<'_> {
         }
         let (rows, bounded) = (residual.len(), self.bounds.count());
         let mut all = residual.resize_vertically(rows + bounded, 0.0);
-        all.rows_mut(rows, bounded).copy_from(&self.short(pieces, eta));
+        all.rows_mut(rows, bounded).copy_from(&self.short(eta));
         let mut j = j.resize_vertically(rows + bounded, 0.0);
-        let mut at = 0;
-        for piece in pieces {
-            if let Piece::Own(_) = piece {
-                let step = 1e-5 * eta[at].abs().max(1e-2);
-                let moved = |by: f64| {
-                    let mut moved = eta.clone();
-                    moved[at] += by;
-                    self.short(pieces, &moved)
-                };
-                let fall = (moved(-step) - moved(step)) / (2.0 * step);
-                j.view_mut((rows, at), (bounded, 1)).copy_from(&fall);
-            }
-            at += piece.len();
+        for (at, _) in self.coordinates.own() {
+            let step = 1e-5 * eta[at].abs().max(1e-2);
+            let moved = |by: f64| {
+                let mut moved = eta.clone();
+                moved[at] += by;
+                self.short(&moved)
+            };
+            let fall = (moved(-step) - moved(step)) / (2.0 * step);
+            j.view_mut((rows, at), (bounded, 1)).copy_from(&fall);
         }
         (all, j)
     }
 
-    /// The nearest coordinates to targets on the way from `first` to the target, one after the
-    /// other, and the steps that were made.
-    fn search_in_stages(
-        &mut self,
-        pieces: &[Piece],
-        first: &DVector<f64>,
-    ) -> (DVector<f64>, usize) {
+    /// The nearest coordinates to targets on the way from those of before to the target, one after
+    /// the other.
+    fn search_in_stages(&mut self) -> DVector<f64> {
         let last = self.target.clone();
-        let begin = &self.jacobian * standard(self.model, pieces, first).0;
-        let (mut eta, mut steps) = (first.clone(), 0);
+        let begin = &self.jacobian * self.coordinates.standard(&self.first).0;
+        let mut eta = self.first.clone();
         for stage in 1..=STAGES {
             self.target = &begin + (&last - &begin) * (stage as f64 / STAGES as f64);
-            let (next, more) = self.search(pieces, &eta, first);
-            (eta, steps) = (next, steps + more);
+            eta = self.search(&eta);
         }
         self.target = last;
-        (eta, steps)
+        eta
     }
 
-    /// The nearest coordinates from `eta` on, and the steps that were made (Levenberg, Marquardt).
-    fn search(
-        &self,
-        pieces: &[Piece],
-        eta: &DVector<f64>,
-        first: &DVector<f64>,
-    ) -> (DVector<f64>, usize) {
+    /// The nearest coordinates from `eta` on (Levenberg, Marquardt).
+    fn search(&self, eta: &DVector<f64>) -> DVector<f64> {
         let mut eta = eta.clone();
         let mut damping = 1e-3;
-        let mut steps = 0;
-        let mut cost = self.cost(pieces, &eta, first);
-        while steps < MAX_STEPS {
-            steps += 1;
-            let (residual, j) = self.rows(pieces, &eta);
-            let next = damped(&j, &residual, &(first - &eta), damping).map(|step| {
+        let mut cost = self.cost(&eta);
+        for _ in 0..MAX_STEPS {
+            let (residual, j) = self.rows(&eta);
+            let next = damped(&j, &residual, &(&self.first - &eta), damping).map(|step| {
                 let longest = step.amax();
                 let limited = if longest > 2.0 { step * (2.0 / longest) } else { step };
                 &eta + limited
             });
-            let better = next.map(|next| (self.cost(pieces, &next, first), next));
+            let better = next.map(|next| (self.cost(&next), next));
             match better.filter(|(there, _)| *there < cost) {
                 Some((there, next)) => {
                     let gain = cost - there;
@@ -204,7 +181,7 @@ impl Problem<'_> {
                 None => damping = damping.max(1e-12) * 8.0,
             }
         }
-        (eta, steps)
+        eta
     }
 }
 
@@ -230,54 +207,12 @@ fn damped(
     qr.r().solve_upper_triangular(&right)
 }
 
-/// The numbers of the file: those that coordinates stand for, and the others as they were.
-fn file_values(model: &RegressionModel, pieces: &[Piece], eta: &DVector<f64>) -> Vec<f64> {
-    let mut values: Vec<f64> = model.parameters.iter().map(|one| one.value).collect();
-    for (place, value) in own_values(model, pieces, eta) {
-        values[place] = value;
-    }
-    values
-}
-
 /// The deviation of a weighted row: from the residual, or from rounding where there is none.
 fn noise_scale(r: &DMatrix<f64>, target: &DVector<f64>, rank: usize) -> f64 {
     let left = if r.nrows() > rank { r[(rank, rank)].abs() } else { 0.0 };
     let floor = 1e-9 * target.norm();
     // Weighted rows have a deviation near 1, whatever their number is.
     if left > floor { 1.0 } else { floor.max(f64::MIN_POSITIVE) }
-}
-
-/// phi = B theta0.
-fn members(model: &RegressionModel) -> DMatrix<f64> {
-    let mut b = DMatrix::zeros(model.axes.len(), model.standard.len());
-    for (row, parameter) in model.axes.iter().enumerate() {
-        for &(column, factor) in &parameter.members {
-            b[(row, column)] += factor;
-        }
-    }
-    b
-}
-
-fn pieces(model: &RegressionModel) -> Vec<Piece> {
-    let mut pieces = Vec::new();
-    let mut place = 0;
-    while let Some(parameter) = model.standard.get(place) {
-        match &parameter.owner {
-            // The ten parameters of a body stand beside each other.
-            Some((_, "m")) => {
-                pieces.push(Piece::Body(place));
-                place += 9;
-            }
-            Some((_, "fv" | "fc" | "Ia")) => pieces.push(Piece::NotNegative(place)),
-            Some(_) => pieces.push(Piece::Free(place)),
-            None => {}
-        }
-        place += 1;
-    }
-    let has_own = model.standard.iter().any(|one| one.owner.is_none());
-    let is_own = |place: &usize| has_own && !is_owned(model, *place);
-    pieces.extend((0..model.parameters.len()).filter(is_own).map(Piece::Own));
-    pieces
 }
 
 /// Whether a number of the file has columns of its own, or goes into those of its link.
@@ -292,182 +227,133 @@ fn is_owned(model: &RegressionModel, place: usize) -> bool {
     })
 }
 
-/// The numbers of the file that coordinates stand for.
-fn own_values(model: &RegressionModel, pieces: &[Piece], eta: &DVector<f64>) -> Vec<(usize, f64)> {
-    let mut at = 0;
-    let mut values = Vec::new();
-    for piece in pieces {
-        if let Piece::Own(place) = *piece {
-            let is_positive = model.parameters[place].is_positive;
-            let least = LEAST_OF * model.parameters[place].value.abs();
-            values.push((place, if is_positive { eta[at] * eta[at] + least } else { eta[at] }));
-        }
-        at += piece.len();
-    }
-    values
+/// What coordinates stand for, each piece after the place of its first one.
+struct Coordinates<'a> {
+    model: &'a RegressionModel,
+    pieces: Vec<(usize, Piece)>,
+    count: usize,
 }
 
-/// The pseudo-inertia [[integral of x x^T dm, integral of x dm], [.., m]] of ten parameters.
-pub(super) fn pseudo_inertia(ten: &[f64]) -> Matrix4<f64> {
-    let &[m, x, y, z, xx, yy, zz, xy, xz, yz] = ten else {
-        unreachable!("a body has ten parameters")
-    };
-    let half = 0.5 * (xx + yy + zz);
-    Matrix4::new(
-        half - xx,
-        -xy,
-        -xz,
-        x, //
-        -xy,
-        half - yy,
-        -yz,
-        y, //
-        -xz,
-        -yz,
-        half - zz,
-        z, //
-        x,
-        y,
-        z,
-        m,
-    )
-}
-
-fn ten_parameters(j: &Matrix4<f64>) -> [f64; 10] {
-    let trace = j[(0, 0)] + j[(1, 1)] + j[(2, 2)];
-    let moment = |axis: usize| trace - j[(axis, axis)];
-    let (m, h) = (j[(3, 3)], [j[(0, 3)], j[(1, 3)], j[(2, 3)]]);
-    let products = [-j[(0, 1)], -j[(0, 2)], -j[(1, 2)]];
-    let [x, y, z] = h;
-    let [xy, xz, yz] = products;
-    [m, x, y, z, moment(0), moment(1), moment(2), xy, xz, yz]
-}
-
-/// L of coordinates: the logarithms of its diagonal, then what is below, row by row.
-fn lower(eta: &[f64]) -> Matrix4<f64> {
-    let mut l = Matrix4::zeros();
-    let mut next = 4;
-    for row in 0..4 {
-        l[(row, row)] = eta[row].exp();
-        for column in 0..row {
-            l[(row, column)] = eta[next];
-            next += 1;
-        }
-    }
-    l
-}
-
-/// Coordinates of given parameters, moved into the bodies that exist.
-fn coordinates(model: &RegressionModel, pieces: &[Piece], start: &[f64]) -> DVector<f64> {
-    let mut eta = Vec::new();
-    for piece in pieces {
-        match *piece {
-            Piece::NotNegative(place) => eta.push(start[place].max(1e-8).sqrt()),
-            Piece::Free(place) => eta.push(start[place]),
-            Piece::Own(place) => {
-                let own = &model.parameters[place];
-                let start = own.value;
-                let above = (1.0 - LEAST_OF) * start;
-                eta.push(if own.is_positive { above.max(1e-5).sqrt() } else { start });
+impl<'a> Coordinates<'a> {
+    fn of(model: &'a RegressionModel) -> Self {
+        let mut coordinates = Self { model, pieces: Vec::new(), count: 0 };
+        let mut place = 0;
+        while let Some(parameter) = model.standard.get(place) {
+            match &parameter.owner {
+                // The ten parameters of a body stand beside each other.
+                Some((_, "m")) => {
+                    coordinates.push(Piece::Body(place), 10);
+                    place += 9;
+                }
+                Some((_, "fv" | "fc" | "Ia")) => coordinates.push(Piece::NotNegative(place), 1),
+                Some(_) => coordinates.push(Piece::Free(place), 1),
+                None => {}
             }
-            Piece::Body(place) => {
-                let l = cholesky_of_near(&pseudo_inertia(&start[place..place + 10]));
-                eta.extend((0..4).map(|row| l[(row, row)].ln()));
-                for row in 0..4 {
-                    eta.extend((0..row).map(|column| l[(row, column)]));
+            place += 1;
+        }
+        let has_own = model.standard.iter().any(|one| one.owner.is_none());
+        for place in (0..model.parameters.len()).filter(|place| has_own && !is_owned(model, *place))
+        {
+            coordinates.push(Piece::Own(place), 1);
+        }
+        coordinates
+    }
+
+    fn push(&mut self, piece: Piece, count: usize) {
+        self.pieces.push((self.count, piece));
+        self.count += count;
+    }
+
+    /// The coordinates that stand for numbers of the file, with the places of these.
+    fn own(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.pieces.iter().filter_map(|(at, piece)| match *piece {
+            Piece::Own(place) => Some((*at, place)),
+            _ => None,
+        })
+    }
+
+    /// The numbers of the file that coordinates stand for.
+    fn own_values(&self, eta: &DVector<f64>) -> Vec<(usize, f64)> {
+        let value = |(at, place): (usize, usize)| {
+            let is_positive = self.model.parameters[place].is_positive;
+            let least = LEAST_OF * self.model.parameters[place].value.abs();
+            (place, if is_positive { eta[at] * eta[at] + least } else { eta[at] })
+        };
+        self.own().map(value).collect()
+    }
+
+    /// The numbers of the file: those that coordinates stand for, and the others as they were.
+    fn file_values(&self, eta: &DVector<f64>) -> Vec<f64> {
+        let mut values: Vec<f64> = self.model.parameters.iter().map(|one| one.value).collect();
+        for (place, value) in self.own_values(eta) {
+            values[place] = value;
+        }
+        values
+    }
+
+    /// Coordinates of given parameters, moved into the bodies that exist.
+    fn of_start(&self, start: &[f64]) -> DVector<f64> {
+        let mut eta = Vec::new();
+        for (_, piece) in &self.pieces {
+            match *piece {
+                Piece::NotNegative(place) => eta.push(start[place].max(1e-8).sqrt()),
+                Piece::Free(place) => eta.push(start[place]),
+                Piece::Own(place) => {
+                    let own = &self.model.parameters[place];
+                    let above = (1.0 - LEAST_OF) * own.value;
+                    eta.push(if own.is_positive { above.max(1e-5).sqrt() } else { own.value });
+                }
+                Piece::Body(place) => {
+                    eta.extend(log_cholesky(&start[place..place + 10]));
                 }
             }
         }
+        DVector::from_vec(eta)
     }
-    DVector::from_vec(eta)
-}
 
-/// The Cholesky factor of a pseudo-inertia, its eigenvalues raised where they are too small.
-fn cholesky_of_near(j: &Matrix4<f64>) -> Matrix4<f64> {
-    // A body that is nothing yet: 10 g of the size of a fist.
-    let nothing = Matrix4::from_diagonal(&nalgebra::Vector4::new(1e-5, 1e-5, 1e-5, 1e-2));
-    let trace = j.trace();
-    let j = if trace > 1e-9 { *j } else { nothing };
-    let least = LEAST_SHARE * j.trace().abs();
-    // Masses and moments have sizes of their own: the block of moments is measured by itself.
-    let mut eigen = j.symmetric_eigen();
-    let moments = 1e-3 * (j[(0, 0)] + j[(1, 1)] + j[(2, 2)]).abs().max(1e-6);
-    let floor = least.min(moments).max(1e-9);
-    eigen.eigenvalues.iter_mut().for_each(|value| *value = value.max(floor));
-    let raised = eigen.recompose();
-    let raised = (raised + raised.transpose()) * 0.5;
-    raised.cholesky().map_or_else(|| cholesky_of_near(&nothing), |cholesky| cholesky.l())
-}
-
-/// theta0 of coordinates, and its derivative.
-fn standard(
-    model: &RegressionModel,
-    pieces: &[Piece],
-    eta: &DVector<f64>,
-) -> (DVector<f64>, DMatrix<f64>) {
-    let size = model.standard.len();
-    let mut theta = DVector::zeros(size);
-    let mut slope = DMatrix::zeros(size, eta.len());
-    products(model, pieces, eta, &mut theta, &mut slope);
-    let mut at = 0;
-    for piece in pieces {
-        match *piece {
-            Piece::Own(_) => {}
-            Piece::Free(place) => {
-                theta[place] = eta[at];
-                slope[(place, at)] = 1.0;
-            }
-            Piece::NotNegative(place) => {
-                theta[place] = eta[at] * eta[at];
-                slope[(place, at)] = 2.0 * eta[at];
-            }
-            Piece::Body(place) => {
-                let l = lower(&eta.as_slice()[at..at + 10]);
-                let own = ten_parameters(&(l * l.transpose()));
-                theta.rows_mut(place, 10).copy_from_slice(&own);
-                let mut next = 4;
-                for row in 0..4 {
-                    for column in 0..=row {
-                        // d(L L^T) = dL L^T + L dL^T
-                        let mut change = Matrix4::zeros();
-                        let is_diagonal = row == column;
-                        change[(row, column)] = if is_diagonal { l[(row, row)] } else { 1.0 };
-                        let moved = change * l.transpose() + l * change.transpose();
-                        let coordinate = if is_diagonal { row } else { next };
-                        next += usize::from(!is_diagonal);
-                        let moved = ten_parameters(&moved);
-                        slope.view_mut((place, at + coordinate), (10, 1)).copy_from_slice(&moved);
+    /// theta0 of coordinates, and its derivative.
+    fn standard(&self, eta: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let size = self.model.standard.len();
+        let mut theta = DVector::zeros(size);
+        let mut slope = DMatrix::zeros(size, eta.len());
+        self.products(eta, &mut theta, &mut slope);
+        for (at, piece) in &self.pieces {
+            let at = *at;
+            match *piece {
+                Piece::Own(_) => {}
+                Piece::Free(place) => {
+                    theta[place] = eta[at];
+                    slope[(place, at)] = 1.0;
+                }
+                Piece::NotNegative(place) => {
+                    theta[place] = eta[at] * eta[at];
+                    slope[(place, at)] = 2.0 * eta[at];
+                }
+                Piece::Body(place) => {
+                    let (own, slopes) = of_log_cholesky(&eta.as_slice()[at..at + 10]);
+                    theta.rows_mut(place, 10).copy_from_slice(&own);
+                    for (coordinate, own) in slopes.iter().enumerate() {
+                        slope.view_mut((place, at + coordinate), (10, 1)).copy_from_slice(own);
                     }
                 }
             }
         }
-        at += piece.len();
+        (theta, slope)
     }
-    (theta, slope)
-}
 
-/// Columns that are products of the model's own numbers, with their derivatives: polynomials of low
-/// degree, whose central differences are nearly exact.
-fn products(
-    model: &RegressionModel,
-    pieces: &[Piece],
-    eta: &DVector<f64>,
-    theta: &mut DVector<f64>,
-    slope: &mut DMatrix<f64>,
-) {
-    let own = own_values(model, pieces, eta);
-    if own.is_empty() {
-        return;
-    }
-    let mut values = file_values(model, pieces, eta);
-    let is_product: Vec<bool> = model.standard.iter().map(|one| one.owner.is_none()).collect();
-    let here = model.standard_values(&values);
-    for (row, value) in here.iter().enumerate().filter(|(row, _)| is_product[*row]) {
-        theta[row] = *value;
-    }
-    let mut at = 0;
-    for piece in pieces {
-        if let Piece::Own(place) = *piece {
+    /// Columns that are products of the model's own numbers, with their derivatives: polynomials of
+    /// low degree, whose central differences are nearly exact.
+    fn products(&self, eta: &DVector<f64>, theta: &mut DVector<f64>, slope: &mut DMatrix<f64>) {
+        if self.own().next().is_none() {
+            return;
+        }
+        let model = self.model;
+        let mut values = self.file_values(eta);
+        let products: Vec<usize> =
+            (0..theta.len()).filter(|&row| model.standard[row].owner.is_none()).collect();
+        let here = model.standard_values(&values);
+        products.iter().for_each(|&row| theta[row] = here[row]);
+        for (at, place) in self.own() {
             let value = values[place];
             let step = 1e-4 * value.abs().max(1e-2);
             values[place] = value + step;
@@ -476,10 +362,9 @@ fn products(
             let below = model.standard_values(&values);
             values[place] = value;
             let inner = if model.parameters[place].is_positive { 2.0 * eta[at] } else { 1.0 };
-            for row in (0..is_product.len()).filter(|&row| is_product[row]) {
+            for &row in &products {
                 slope[(row, at)] = inner * (above[row] - below[row]) / (2.0 * step);
             }
         }
-        at += piece.len();
     }
 }

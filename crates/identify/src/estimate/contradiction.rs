@@ -9,20 +9,19 @@ use super::condensed::Condensed;
 use super::least_squares::{Estimate, Fit, Method, Options};
 use super::left_out::{LeftOut, NumberedLog};
 use super::noise_bias::noise_squares;
-use super::own_estimate::{Own, Tested, of_joint, spread};
+use super::own_estimate::{Own, Tested, spread};
 use super::rows::BlockMaker;
-use super::triangle::Triangle;
 use super::unexplained::ShownLogs;
 use crate::policy::contradiction::{ALIKE, OF_BEATS, OF_CHANCE, OF_OWN, OF_OWN_ALONE, OF_TORQUE};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex};
+use denavit_numerics::least_squares::Triangle;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
-use std::fmt;
 
 /// Samples of a log that are looked at behind half the cutoff, before decimation.
-const SAMPLES: usize = 200_000;
+pub(super) const SAMPLES: usize = 200_000;
 
 /// A log that contradicts the others.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,55 +67,6 @@ pub enum Likeness {
     Constant(f64, &'static str),
     /// So many times as large.
     Factor(f64),
-}
-
-impl fmt::Display for ContradictingLog {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { file, joints, standing } = self;
-        let of = |one: &ContradictingJoint| {
-            let ContradictingJoint { joint, left, own, like } = one;
-            let like = match like {
-                None => String::new(),
-                Some(Likeness::Constant(by, unit)) => format!(", as if {by:+.3} {unit} were added"),
-                Some(Likeness::Factor(by)) => format!(", as if it were {by:.3} times as large"),
-            };
-            let [left, own] = [left, own].map(|share| 100.0 * share);
-            format!("{left:.1} % of the torque of {joint} is left, {own:.1} % by its own{like}")
-        };
-        let joints: Vec<String> = joints.iter().map(of).collect();
-        match standing {
-            Standing::OfFew | Standing::OfFewFollowed => {
-                write!(
-                    f,
-                    "{file} contradicts the other logs, which no parameters explain together "
-                )?;
-                write!(f, "with it")?;
-            }
-            Standing::Undecided => write!(f, "{file} and the other logs contradict each other")?,
-            Standing::HeldOut => {
-                write!(f, "{file} and the logs for the estimate contradict each other")?;
-            }
-        }
-        write!(
-            f,
-            ": {}. It may be of another payload, gain, offset or robot, or show a law that the \
-             model lacks. ",
-            joints.join("; ")
-        )?;
-        match standing {
-            Standing::OfFew => write!(f, "Parameters are those of the others; leave it out."),
-            Standing::OfFewFollowed => {
-                write!(f, "Parameters are not those of the others alone: leave it out.")
-            }
-            Standing::HeldOut => write!(f, "Which of them are right cannot be told."),
-            Standing::Undecided => write!(
-                f,
-                "The logs that agree are not both more and longer together than those that do \
-                 not: which of them are right cannot be told, and what was found is not to be \
-                 believed. Look at each log by itself."
-            ),
-        }
-    }
 }
 
 /// The logs that contradict the others, of some, one after another: each is held against what the
@@ -177,7 +127,7 @@ fn is_by_row(options: &Options) -> bool {
 }
 
 /// The rows of an estimate as they were measured.
-fn plain<'a>(
+pub(super) fn plain<'a>(
     model: &RegressionModel,
     logs: &[Conditioned],
     found: &'a Estimate,
@@ -187,36 +137,6 @@ fn plain<'a>(
         true => Cow::Owned(Condensed::counted(model, (logs, &found.left_out))),
         false => Cow::Borrowed(&found.condensed),
     }
-}
-
-/// The logs for validation that contradict those for the estimate: parameters are taken to be
-/// anywhere within their errors, and those that the estimate does not show are the logs' own.
-pub(crate) fn contradicting_held_out(
-    model: &RegressionModel,
-    train: &[Conditioned],
-    logs: &[Conditioned],
-    found: &Estimate,
-    options: &Options,
-) -> Vec<ContradictingLog> {
-    if logs.is_empty() || found.condensed.rank != model.rank() {
-        return Vec::new();
-    }
-    // near reversals and at rest friction is not what the sign of a rate says
-    let left_out = found.left_out.sure(model, logs, options);
-    let condensed = Condensed::counted(model, (logs, &left_out));
-    let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
-    let weights: Vec<f64> = found.noise_of_joints().into_iter().map(weight).collect();
-    let all: Vec<LogIndex> = (0..train.len()).map(LogIndex).collect();
-    let train = plain(model, train, found, options);
-    let means = &train.means(&all, found.solution.phi.as_slice());
-    let of = |at: LogIndex| {
-        let one = Tested::new(&condensed, at, &weights);
-        let phi = &one.with_own(&found.solution);
-        let (covariance, left_out) = (&found.covariance, &left_out);
-        let told = Claim { model, phi, covariance, left_out, means }.against(at, logs, &one)?;
-        Some(ContradictingLog { standing: Standing::HeldOut, ..told })
-    };
-    (0..logs.len()).map(LogIndex).filter_map(of).collect()
 }
 
 /// What others say of a log.
@@ -295,7 +215,7 @@ impl Claim<'_> {
         let of = |(joint, triangle): (usize, &Triangle)| {
             let rows = triangle.rows() as f64;
             let all = triangle.target_squares();
-            let left = triangle.squares(&of_joint(&pattern[joint], phi.as_slice()));
+            let left = triangle.squares(&model.of_joint(joint, phi.as_slice()));
             let unsure = spread(triangle, &pattern[joint], covariance);
             let constant = one.constant(left, JointIndex(joint), phi.as_slice(), self.means[joint]);
             let constant = signs[joint].then_some(constant);
@@ -333,16 +253,11 @@ fn likeness(
     joint: JointIndex,
     phi: &[f64],
 ) -> Option<Likeness> {
-    let own: Vec<f64> = model.pattern()[joint.0].iter().map(|&at| phi[at]).collect();
     // rows, sums of what is left and of its squares, its products with the computed torque, whose
     // squares
     let mut sums = [0.0; 5];
-    BlockMaker::new(model, log).for_each(|block| {
-        let (Some(left), Some([torque, _])) = (block.residual(joint, &own), &block.torque[joint.0])
-        else {
-            return;
-        };
-        for (left, torque) in left.into_iter().zip(torque) {
+    BlockMaker::new(model, log).for_each_left(phi, |of, _, [torque, _, left]| {
+        if of == joint {
             let computed = torque - left;
             let own = [1.0, left, left * left, left * computed, computed * computed];
             sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);

@@ -1,10 +1,10 @@
 //! Standard errors that hold where residuals are alike from one sample to the next.
 
 use super::condensed::Condensed;
-use super::solve::{PriorRow, Solution, solve};
-use crate::policy::errors::{MOST_ALIKE, MOST_LEVERAGE, NEIGHBOURS, ONE_OF_TWENTY};
-use denavit_measure::{JointIndex, LogIndex, PartIndex};
-use denavit_numerics::Random;
+use crate::policy::errors::{MOST_LEVERAGE, NEIGHBOURS};
+use denavit_measure::{JointIndex, PartIndex};
+use denavit_numerics::least_squares::{PriorRow, Solution, Triangle, solve};
+use denavit_numerics::{Random, long_run};
 use nalgebra::{DMatrix, DVector};
 
 /// How standard errors are found.
@@ -49,8 +49,7 @@ impl Problem<'_> {
 
     /// Rows beyond those that the estimate takes.
     pub(super) fn free_rows(&self) -> f64 {
-        let rows: usize =
-            self.condensed.parts.iter().flatten().map(super::triangle::Triangle::rows).sum();
+        let rows: usize = self.condensed.parts.iter().flatten().map(Triangle::rows).sum();
         (rows as f64 - self.solution.excited() as f64).max(1.0)
     }
 
@@ -69,13 +68,9 @@ impl Problem<'_> {
         }
         let follows = &self.solution.factor * (sums * &self.solution.factor).transpose();
         let mut moments = vec![[0.0; 2]; sums.nrows()];
-        for (part, triangles) in self.condensed.parts.iter().enumerate() {
-            let weights = &self.weights[self.condensed.log_of_part[part].0];
+        for part in 0..self.condensed.parts.len() {
             let mut decides = vec![0.0; sums.nrows()];
-            for (joint, triangle) in triangles.iter().enumerate() {
-                let pattern = &self.condensed.pattern[joint];
-                let r = triangle.matrix().view((0, 0), (pattern.len(), pattern.len()));
-                let rows = weights[joint] * (r * follows.select_rows(pattern));
+            for rows in self.weighted(PartIndex(part), &follows) {
                 for (decides, column) in decides.iter_mut().zip(rows.column_iter()) {
                     *decides += column.norm_squared();
                 }
@@ -89,6 +84,21 @@ impl Problem<'_> {
             |[sum, squares]: [f64; 2]| if squares > 0.0 { sum * sum / squares } else { 0.0 };
         let degrees = moments.into_iter().map(|both| (parts_alike(both) / neighbours).max(1.0));
         DVector::from_iterator(sums.nrows(), degrees)
+    }
+
+    /// W of a part, weighted, times a matrix: for each joint its rows.
+    fn weighted<'b>(
+        &'b self,
+        part: PartIndex,
+        by: &'b DMatrix<f64>,
+    ) -> impl Iterator<Item = DMatrix<f64>> + 'b {
+        let weights = &self.weights[self.condensed.log_of_part[part.0].0];
+        let of = move |(joint, triangle): (usize, &Triangle)| {
+            let pattern = &self.condensed.pattern[joint];
+            let r = triangle.matrix().view((0, 0), (pattern.len(), pattern.len()));
+            weights[joint] * (r * by.select_rows(pattern))
+        };
+        self.condensed.parts[part.0].iter().enumerate().map(of)
     }
 
     /// F F^T S F F^T with S the long-run covariance of the scores.
@@ -122,12 +132,7 @@ impl Problem<'_> {
             return score;
         }
         let mut leverage = DMatrix::zeros(size, size);
-        let weights = &self.weights[self.condensed.log_of_part[part.0].0];
-        for (joint, triangle) in self.condensed.parts[part.0].iter().enumerate() {
-            let pattern = &self.condensed.pattern[joint];
-            let own = DMatrix::from_fn(pattern.len(), size, |at, c| factor[(pattern[at], c)]);
-            let r = triangle.matrix().view((0, 0), (pattern.len(), pattern.len()));
-            let rows = weights[joint] * (r * own);
+        for rows in self.weighted(part, factor) {
             leverage += rows.tr_mul(&rows);
         }
         if leverage.iter().any(|entry| !entry.is_finite()) {
@@ -183,78 +188,10 @@ impl Problem<'_> {
     }
 }
 
-/// The covariance of a sum over parts, of which neighbours of the same log are correlated: counted
-/// half where they are hardly, and where they are more, as much again as a process of first order
-/// has at larger distances, whose sums are 1 / (1 - r) times those of its neighbours.
-pub(super) fn long_run(parts: &[DVector<f64>], log_of_part: &[LogIndex]) -> DMatrix<f64> {
-    let size = parts.first().map_or(0, DVector::len);
-    let (mut sum, mut beside) = (DMatrix::zeros(size, size), DMatrix::zeros(size, size));
-    for (at, part) in parts.iter().enumerate() {
-        sum += part * part.transpose();
-        if let Some(next) = parts.get(at + 1).filter(|_| log_of_part[at + 1] == log_of_part[at]) {
-            let cross = part * next.transpose();
-            beside += (&cross + cross.transpose()) * 0.5;
-        }
-    }
-    let alike = (0..size).filter(|&at| sum[(at, at)] > 0.0);
-    let alike: Vec<f64> = alike.map(|at| beside[(at, at)] / sum[(at, at)]).collect();
-    let alike = alike.iter().sum::<f64>() / alike.len().max(1) as f64;
-    (sum + beside) / (1.0 - alike.clamp(0.0, MOST_ALIKE))
-}
-
-/// What chance leaves of a variance with so many degrees of freedom, less in one of twenty cases
-/// (Wilson and Hilferty 1931).
-pub(super) fn least_by_chance(degrees_of_freedom: f64) -> f64 {
-    let spread = 2.0 / (9.0 * degrees_of_freedom.max(1.0));
-    (1.0 - spread + ONE_OF_TWENTY * spread.sqrt()).max(0.0).powi(3)
-}
-
-/// The factor of a standard error that makes a 95 % interval, by Student's distribution (Cornish
-/// and Fisher's series; better than 1 % from 2 degrees of freedom on).
-pub fn interval_factor(degrees_of_freedom: f64) -> f64 {
-    let z: f64 = 1.959_963_984_540_054;
-    let nu = degrees_of_freedom.max(2.0);
-    let first = (z.powi(3) + z) / (4.0 * nu);
-    let second = (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * nu * nu);
-    let third =
-        (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z) / (384.0 * nu.powi(3));
-    let fourth = (79.0 * z.powi(9) + 776.0 * z.powi(7) + 1482.0 * z.powi(5)
-        - 1920.0 * z.powi(3)
-        - 945.0 * z)
-        / (92160.0 * nu.powi(4));
-    z + first + second + third + fourth
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::triangle::Triangle;
     use super::*;
-
-    /// Sums over 64 parts of a process of first order, whose variance is known: white, and one
-    /// whose neighbours are correlated by a half, of which neighbours alone would show half.
-    #[test]
-    fn sums_of_parts_that_are_alike_have_their_variance() {
-        const PARTS: usize = 64;
-        let log_of_part = [LogIndex(0); PARTS];
-        let mut random = Random::new(3);
-        for alike in [0.0_f64, 0.5] {
-            let fresh = (1.0 - alike * alike).sqrt();
-            let mut mean = 0.0;
-            for _ in 0..400 {
-                let mut last = random.normal();
-                let parts: Vec<DVector<f64>> = (0..PARTS)
-                    .map(|_| {
-                        last = alike * last + fresh * random.normal();
-                        DVector::from_element(1, last)
-                    })
-                    .collect();
-                mean += long_run(&parts, &log_of_part)[(0, 0)] / 400.0;
-            }
-            let distances = (1..PARTS).map(|d| (PARTS - d) as f64 * alike.powi(d as i32));
-            let variance = PARTS as f64 + 2.0 * distances.sum::<f64>();
-            assert!((mean / variance - 1.0).abs() < 0.12, "{alike}: {mean} {variance}");
-        }
-    }
+    use denavit_measure::LogIndex;
 
     /// Of 24 parts six decide a parameter alike, and all another one: their variances have as many
     /// degrees of freedom as sums with neighbours counted half, of so many.
@@ -267,13 +204,9 @@ mod tests {
             vec![triangle]
         };
         let condensed = Condensed {
-            pattern: vec![vec![0, 1]],
             parts: (0..24).map(part).collect(),
             log_of_part: vec![LogIndex(0); 24],
-            end_s: (1..25).map(f64::from).collect(),
-            independent: vec![1.0],
-            row_s: vec![1.0],
-            rank: 2,
+            ..Condensed::without_parts((vec![vec![0, 1]], 2), vec![1.0], vec![1.0])
         };
         let weights = [vec![1.0]];
         let system = condensed.system(&condensed.whole(), &weights, &[]);
@@ -288,23 +221,5 @@ mod tests {
         }
         let degrees = problem.degrees_of_freedom(Errors::Classical, &sums);
         assert_eq!(degrees[0], 46.0);
-    }
-
-    /// Tables of the distribution of squares, 5 %.
-    #[test]
-    fn what_chance_leaves_is_that_of_tables() {
-        for (nu, printed) in [(5.0, 1.145), (10.0, 3.940), (30.0, 18.493)] {
-            assert!((least_by_chance(nu) * nu / printed - 1.0).abs() < 0.02, "{nu}");
-        }
-    }
-
-    /// Tables of Student's distribution, 97.5 %.
-    #[test]
-    fn interval_factors_are_those_of_tables() {
-        for (nu, printed) in
-            [(2.0, 4.303), (4.0, 2.776), (10.0, 2.228), (30.0, 2.042), (1e6, 1.960)]
-        {
-            assert!((interval_factor(nu) - printed).abs() < 0.01 * printed, "{nu}");
-        }
     }
 }

@@ -5,12 +5,11 @@
 //! that the filter left, both go through the filter again, and are compared.
 
 use super::validate::validate;
-use denavit_measure::condition::{Butterworth, Conditioned, STENCIL};
-use denavit_plants::regression::{RegressionModel, RegressionRows};
+use denavit_measure::condition::{Conditioned, STENCIL};
+use denavit_plants::regression::{RegressionJoint, RegressionModel};
 
-/// Samples that are looked at in all, and computed at once.
+/// Samples that are looked at in all.
 const SAMPLES: usize = 20_000;
-const BLOCK: usize = 512;
 
 /// The error that the filter makes of each joint's torque by itself, root of mean square over root
 /// of mean square, with phi; 0 where none was measured. Coulomb friction, whose rows near reversals
@@ -28,10 +27,8 @@ pub(crate) fn filter_errors(
     let again: Vec<Conditioned> =
         logs.iter().filter_map(|log| filtered_again(model, log, longest, &smooth)).collect();
     let left = validate(model, &smooth, &again);
-    let of_joint = |joint: &denavit_plants::regression::RegressionJoint| {
-        let found = left.joints.iter().find(|one| one.name == joint.name);
-        found.map_or(0.0, |one| one.relative)
-    };
+    let of_joint =
+        |joint: &RegressionJoint| left.joint(&joint.name).map_or(0.0, |one| one.relative);
     model.joints.iter().map(of_joint).collect()
 }
 
@@ -48,11 +45,16 @@ fn filtered_again(
     let length = log.range.len().min(longest.max(4 * edge));
     let start = log.range.start + (log.range.len() - length) / 2;
     let range = edge..length.checked_sub(edge).filter(|end| *end > edge)?;
-    let again = |column: &[f64]| {
-        let mut column = column[start..start + length].to_vec();
+    let filtered = |mut column: Vec<f64>| {
         filter.zero_phase(&mut column);
         column
     };
+    let again = |column: &[f64]| filtered(column[start..start + length].to_vec());
+    let mut motion = Vec::new();
+    log.motion(start..start + length, &mut motion);
+    let torques = log.torque.iter().zip(model.torques(&motion, phi));
+    let torques =
+        torques.map(|(measured, torque)| measured.as_ref().map(|_| filtered(torque))).collect();
     let found = Conditioned {
         file: log.file.clone(),
         step_s: log.step_s,
@@ -60,46 +62,11 @@ fn filtered_again(
         rates: log.rates.as_ref().map(|both| {
             both.each_ref().map(|columns| columns.iter().map(|column| again(column)).collect())
         }),
-        torque: torques(model, log, start, length, phi, filter),
+        torque: torques,
         range,
         decimation: log.decimation,
         filter: log.filter.clone(),
         ..Conditioned::default()
     };
     (found.samples() > 0).then_some(found)
-}
-
-/// The filtered torques of phi, of joints whose torque was measured.
-fn torques(
-    model: &RegressionModel,
-    log: &Conditioned,
-    start: usize,
-    length: usize,
-    phi: &[f64],
-    filter: &Butterworth,
-) -> Vec<Option<Vec<f64>>> {
-    let n = model.joints.len();
-    let mut computed = vec![Vec::new(); n];
-    let (mut evaluator, mut rows) = (model.evaluator(), RegressionRows::default());
-    let mut motion = Vec::new();
-    for first in (start..start + length).step_by(BLOCK) {
-        let end = (first + BLOCK).min(start + length);
-        log.motion(first..end, &mut motion);
-        let columns: Vec<&[f64]> = motion.iter().map(Vec::as_slice).collect();
-        evaluator.evaluate(&columns, &mut rows).expect("every joint has its columns");
-        for (joint, computed) in computed.iter_mut().enumerate() {
-            let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
-            let mut torque = vec![0.0; end - first];
-            rows.torque(joint, &own, &mut torque);
-            computed.extend(torque);
-        }
-    }
-    let measured = log.torque.iter().zip(computed);
-    measured
-        .map(|(measured, mut torque)| {
-            measured.as_ref()?;
-            filter.zero_phase(&mut torque);
-            Some(torque)
-        })
-        .collect()
 }

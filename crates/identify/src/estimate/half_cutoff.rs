@@ -8,41 +8,56 @@
 //! difference of what each part of the logs does to them (Hausman 1978).
 
 use super::condensed::{Condensed, Rows};
-use super::errors::{FEWEST_PARTS, Problem, long_run};
+use super::errors::{FEWEST_PARTS, Problem};
 use super::least_squares::{Estimate, Fit};
+use super::report::BIASING;
 use crate::policy::half_cutoff::OF_CHANGE;
 use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
+use denavit_numerics::long_run;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 
 /// Samples of all logs that are looked at, before decimation.
 pub(super) const SAMPLES: usize = 200_000;
 
-/// A change of listed parameters with half the cutoff.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Change {
-    /// The changes.
-    pub change: DVector<f64>,
-    /// Their standard deviations by chance.
-    pub deviation: DVector<f64>,
-    /// Standard errors of the listed parameters without what the change adds.
-    pub own_errors: DVector<f64>,
+/// How a parameter changes with half the cutoff of the filter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfCutoff {
+    /// By how much.
+    pub change: f64,
+    /// The standard deviation of that by chance.
+    pub deviation: f64,
+    /// The standard error of the parameter without what the change adds to it.
+    pub own_std: f64,
 }
 
-impl Change {
-    /// Adds what is more than chance to a covariance of phi: an unknown bias.
-    pub(super) fn widen(&mut self, model: &RegressionModel, covariance: &mut DMatrix<f64>) {
-        self.own_errors = deviations(model, covariance);
-        let both = self.change.iter().zip(&self.deviation);
-        let beyond = |(change, deviation): (&f64, &f64)| {
-            let squared = change * change - deviation * deviation;
-            OF_CHANGE * squared.max(0.0).sqrt() * change.signum()
-        };
-        let listed = DVector::from_iterator(self.change.len(), both.map(beyond));
-        if let Some(bias) = model.to_listed().clone().lu().solve(&listed) {
-            *covariance += &bias * bias.transpose();
-        }
+impl HalfCutoff {
+    /// Whether it changes by more than so many deviations by chance, and by more than an interval
+    /// without the change forgives.
+    pub(super) fn is_beyond(&self, deviations: f64) -> bool {
+        self.change.abs() > (BIASING * self.own_std).max(deviations * self.deviation)
+    }
+
+    /// What a change is more than chance.
+    fn beyond(&self) -> f64 {
+        let squared = self.change * self.change - self.deviation * self.deviation;
+        OF_CHANGE * squared.max(0.0).sqrt() * self.change.signum()
+    }
+}
+
+/// Adds what changes of the listed parameters are more than chance to a covariance of phi: an
+/// unknown bias.
+pub(super) fn widen(
+    changes: &mut [HalfCutoff],
+    model: &RegressionModel,
+    covariance: &mut DMatrix<f64>,
+) {
+    let own = deviations(model, covariance);
+    changes.iter_mut().zip(&own).for_each(|(one, own)| one.own_std = *own);
+    let listed = DVector::from_iterator(changes.len(), changes.iter().map(HalfCutoff::beyond));
+    if let Some(bias) = model.to_listed().clone().lu().solve(&listed) {
+        *covariance += &bias * bias.transpose();
     }
 }
 
@@ -54,7 +69,7 @@ impl Fit<'_> {
         model: &RegressionModel,
         (logs, left_out): Rows<'_>,
         found: &Estimate,
-    ) -> Option<Change> {
+    ) -> Option<Vec<HalfCutoff>> {
         let noisy = |log: &&Conditioned| log.position_noise.iter().any(|noise| *noise > 0.0);
         let (mut own, mut halved, mut places) = (Vec::new(), Vec::new(), Vec::new());
         for (number, log) in logs.iter().enumerate().filter(|(_, log)| noisy(log)) {
@@ -83,7 +98,7 @@ impl Fit<'_> {
         both: [Condensed; 2],
         weights: &[Vec<f64>],
         found: &Estimate,
-    ) -> Option<Change> {
+    ) -> Option<Vec<HalfCutoff>> {
         let both = both.map(|condensed| {
             let solution = self.solved(&condensed, &condensed.whole(), weights);
             (condensed, solution)
@@ -102,8 +117,10 @@ impl Fit<'_> {
         let [before, after] = both.each_ref().map(|(_, solution)| &solution.phi);
         let change = model.to_listed() * (after - before);
         let deviation = deviations(model, &long_run(&apart, &condensed.log_of_part));
-        let own_errors = DVector::zeros(change.len());
-        Some(Change { change, deviation, own_errors })
+        let both = change.iter().zip(&deviation);
+        let of =
+            |(&change, &deviation): (&f64, &f64)| HalfCutoff { change, deviation, own_std: 0.0 };
+        Some(both.map(of).collect())
     }
 }
 

@@ -8,11 +8,11 @@
 use super::condensed::{Condensed, Rows};
 use super::least_squares::Estimate;
 use super::rows::BlockMaker;
-use super::triangle::Triangle;
-use crate::error::EstimateError;
+use crate::error::{Error, ErrorKind};
 use crate::policy::instruments::{MOVES, OTHER};
-use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
+use denavit_numerics::least_squares::Triangle;
+use denavit_numerics::long_run;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
@@ -23,27 +23,38 @@ pub(super) fn instrumental(
     rows: Rows<'_>,
     instruments: &[Conditioned],
     found: &mut Estimate,
-) -> Result<(), EstimateError> {
+) -> Result<(), Error> {
     let (logs, _) = rows;
     let fits = |(log, instrument): (&Conditioned, &Conditioned)| {
         log.samples() == instrument.samples() && log.decimation == instrument.decimation
     };
     if logs.len() != instruments.len() || !logs.iter().zip(instruments).all(fits) {
-        return Err(EstimateError::Instruments);
+        return Err(unlike());
     }
     for (number, (log, instrument)) in logs.iter().zip(instruments).enumerate() {
         let differ = other_motion(log, instrument);
         if differ > OTHER {
             let percent = (100.0 * differ).min(1e6) as usize;
-            return Err(EstimateError::OtherMotion(LogIndex(number), percent));
+            let text = format!(
+                "instruments must be of the motion of their log, without its noise: in log {} \
+                 positions of a joint differ by {percent} % of its variance",
+                number + 1
+            );
+            return Err(Error::new(ErrorKind::Unsuitable, text));
         }
     }
     let condensed = paired(model, rows, instruments);
     let system = System::new(&condensed, &condensed.whole(), &found.weights[..]);
-    let solved = system.solve().ok_or(EstimateError::Instruments)?;
+    let solved = system.solve().ok_or_else(unlike)?;
     found.solution.phi = solved;
-    found.covariance = system.covariance(&condensed, found).ok_or(EstimateError::Instruments)?;
+    found.covariance = system.covariance(&condensed, found).ok_or_else(unlike)?;
     Ok(())
+}
+
+fn unlike() -> Error {
+    let text = "instruments must be as many logs as there are for training, each with as many \
+                samples";
+    Error::new(ErrorKind::Unsuitable, text)
 }
 
 /// The largest share of a joint's variance by which positions differ from sample to sample.
@@ -127,14 +138,7 @@ impl System {
                 without.lu().solve(&score).unwrap_or_else(|| &inverse * score)
             })
             .collect();
-        let mut sum = DMatrix::zeros(rank, rank);
-        for (part, score) in scores.iter().enumerate() {
-            sum += score * score.transpose();
-            if let Some(next) = scores.get(part + 1) {
-                let cross = score * next.transpose();
-                sum += (&cross + cross.transpose()) * 0.5;
-            }
-        }
+        let sum = long_run(&scores, &condensed.log_of_part);
         Some(sum * (count as f64 / (count as f64 - 1.0).max(1.0)))
     }
 }

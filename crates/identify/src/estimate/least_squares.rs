@@ -1,22 +1,22 @@
 //! The estimates: one loop of weighting and solving, by method.
 
 use super::condensed::{Condensed, Rows};
-use super::errors::{Errors, FEWEST_PARTS, Problem, least_by_chance};
-use super::half_cutoff::Change;
+use super::errors::{Errors, FEWEST_PARTS, Problem};
+use super::half_cutoff::{HalfCutoff, widen};
 use super::instruments;
 use super::left_out::{LeftOut, SlowRows};
 use super::likelihood;
 use super::noise_bias::{NoiseBias, NoiseOfLog, noise_bias};
 use super::robust::{Loss, influences, scales};
 use super::rows::Block;
-use super::solve::{PriorRow, Solution, solve};
 use super::total;
-use super::triangle::Triangle;
 use super::weights::{ByLog, MAX_REWEIGHTING, SETTLED, Settled, moved};
-use crate::error::{Error, EstimateError};
+use crate::error::{Error, ErrorKind};
 use crate::policy::least_squares::{FEWEST_DEGREES, MOVES_LITTLE};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex};
+use denavit_numerics::least_by_chance;
+use denavit_numerics::least_squares::{PriorRow, Solution, Triangle, solve};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 
@@ -30,6 +30,10 @@ const ROUNDS_OF_SCALES: usize = 10;
 /// Parts of logs that say by themselves how large errors are: with fewer, errors are also at least
 /// those that the filter's correlation makes, less what chance may show less of them.
 const ENOUGH_PARTS: usize = 48;
+
+const NOTHING_LEFT: &str = "no joint is ever as fast as `options.slow` says: nothing is left of \
+                            the logs\n  hint: a lower rate, or `options.slow=biasing`, which is \
+                            the default";
 
 /// How base parameters are estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -79,8 +83,9 @@ pub struct Estimate {
     pub noise_bias: DVector<f64>,
     /// The largest share of noise of the positions in what the columns say of a direction of phi.
     pub noise_share: f64,
-    /// What changes with half the cutoff of the filter; none where that cannot be told.
-    pub change: Option<Change>,
+    /// How listed parameters change with half the cutoff of the filter; none where that cannot be
+    /// told.
+    pub change: Option<Vec<HalfCutoff>>,
     /// What noise of the positions of each log does by itself; nothing of instrumental variables.
     pub noise_of_logs: Vec<NoiseOfLog>,
     /// For each log the standard deviation of each joint's residuals [N m, N]; 0 where no torque
@@ -90,8 +95,6 @@ pub struct Estimate {
     pub condensed: Condensed,
     /// For each log what each joint's rows count.
     pub weights: Vec<Vec<f64>>,
-    /// Times that weights were found.
-    pub rounds: usize,
     /// Rows that do not count.
     pub(super) left_out: LeftOut,
 }
@@ -137,7 +140,7 @@ pub fn estimate(
     let (mut covariance, degrees_of_freedom) = fit.errors(model, &first, covariance);
     let mut change = fit.change(model, rows, &first);
     if let Some(change) = &mut change {
-        change.widen(model, &mut covariance);
+        widen(change, model, &mut covariance);
     }
     Ok(Estimate { covariance, degrees_of_freedom, change, ..first })
 }
@@ -174,14 +177,19 @@ fn independent(logs: &[Conditioned]) -> f64 {
 }
 
 /// Whether logs have enough samples for an estimate.
-pub(crate) fn long_enough(logs: &[Conditioned], found: &Estimate) -> Result<(), EstimateError> {
+pub(crate) fn long_enough(logs: &[Conditioned], found: &Estimate) -> Result<(), Error> {
     let independent = independent(logs) as usize;
     let parameters = found.solution.excited();
     let needed = ROWS_OF_ONE * parameters;
-    match independent < needed {
-        true => Err(EstimateError::TooShort(independent, parameters, needed)),
-        false => Ok(()),
+    if independent >= needed {
+        return Ok(());
     }
+    let text = format!(
+        "the logs are too short: all torques have about {independent} samples that are independent \
+         of each other after the filter, and {parameters} parameters need {needed}\n  hint: more \
+         of the motion, or a higher cutoff (`conditions.filter`) if the log has little noise"
+    );
+    Err(Error::new(ErrorKind::TooShort, text))
 }
 
 /// The factors of both sides of rows: log, block, joint.
@@ -195,11 +203,7 @@ pub(super) struct Fit<'a> {
 
 impl Fit<'_> {
     /// Least squares, weighted if that is wanted, of the rows that count.
-    pub(super) fn plain(
-        &self,
-        model: &RegressionModel,
-        rows: Rows<'_>,
-    ) -> Result<Estimate, EstimateError> {
+    pub(super) fn plain(&self, model: &RegressionModel, rows: Rows<'_>) -> Result<Estimate, Error> {
         let (logs, _) = rows;
         let has_torque = logs.iter().any(|log| log.torque.iter().any(Option::is_some));
         self.of_condensed(Condensed::counted(model, rows), has_torque)
@@ -210,12 +214,15 @@ impl Fit<'_> {
         &self,
         condensed: Condensed,
         has_torque: bool,
-    ) -> Result<Estimate, EstimateError> {
+    ) -> Result<Estimate, Error> {
         let count: usize = condensed.parts.iter().flatten().map(Triangle::rows).sum();
         match count {
-            0 if has_torque => Err(EstimateError::NothingLeft),
-            0 => Err(EstimateError::NoTorque),
-            rows if rows < condensed.rank => Err(EstimateError::TooFewRows(rows, condensed.rank)),
+            0 if has_torque => Err(Error::new(ErrorKind::TooShort, NOTHING_LEFT)),
+            0 => Err(Error::new(ErrorKind::MissingColumn, "no torque was measured")),
+            rows if rows < condensed.rank => {
+                let text = format!("{rows} rows are too few for {} parameters", condensed.rank);
+                Err(Error::new(ErrorKind::TooShort, text))
+            }
             _ => Ok(self.by_noise(condensed, self.options.method != Method::Ordinary)),
         }
     }
@@ -271,7 +278,7 @@ impl Fit<'_> {
 
     /// Least squares, rows weighted by the noise of their joint in their log if that is wanted.
     fn by_noise(&self, condensed: Condensed, is_weighted: bool) -> Estimate {
-        let Settled { solution, weights, noise, rounds } = self.settled(&condensed, is_weighted);
+        let Settled { solution, weights, noise } = self.settled(&condensed, is_weighted);
         Estimate {
             solution,
             covariance: DMatrix::zeros(0, 0),
@@ -283,7 +290,6 @@ impl Fit<'_> {
             noise,
             condensed,
             weights,
-            rounds,
             left_out: LeftOut::none(&[]),
         }
     }
@@ -294,7 +300,7 @@ impl Fit<'_> {
         rows: Rows<'_>,
         found: Estimate,
         loss: Loss,
-    ) -> Result<Estimate, EstimateError> {
+    ) -> Result<Estimate, Error> {
         self.reweighting(model, rows, found, |found, round| {
             // medians jump: with scales that stay the weights settle
             if round < ROUNDS_OF_SCALES {
@@ -310,7 +316,7 @@ impl Fit<'_> {
         model: &RegressionModel,
         rows: Rows<'_>,
         found: Estimate,
-    ) -> Result<Estimate, EstimateError> {
+    ) -> Result<Estimate, Error> {
         self.reweighting(model, rows, found, |found, _| {
             let ones = vec![vec![1.0; found.condensed.pattern.len()]; rows.0.len()];
             (Box::new(self.factors_of_noise(model, rows.0, found)), ones)
@@ -325,7 +331,7 @@ impl Fit<'_> {
         rows: Rows<'_>,
         mut found: Estimate,
         mut weigh: impl FnMut(&mut Estimate, usize) -> (Factors, ByLog),
-    ) -> Result<Estimate, EstimateError> {
+    ) -> Result<Estimate, Error> {
         let mut change = f64::INFINITY;
         for round in 0..MAX_REWEIGHTING {
             let (factors, deviations) = weigh(&mut found, round);
@@ -344,7 +350,6 @@ impl Fit<'_> {
         let next = self.solved(&condensed, &condensed.whole(), &weights);
         let change = moved(&found.solution, &next);
         (found.weights, found.condensed, found.solution) = (weights, condensed, next);
-        found.rounds += 1;
         change
     }
 
@@ -378,8 +383,11 @@ impl Fit<'_> {
 }
 
 /// An estimate whose last weights changed an entry of phi by so many standard errors, at most.
-fn settled(found: Estimate, change: f64) -> Result<Estimate, EstimateError> {
-    if change < MOVES_LITTLE { Ok(found) } else { Err(EstimateError::NotSettled) }
+fn settled(found: Estimate, change: f64) -> Result<Estimate, Error> {
+    match change < MOVES_LITTLE {
+        true => Ok(found),
+        false => Err(Error::new(ErrorKind::NotSettled, "the weights do not settle")),
+    }
 }
 
 /// What rows count by the loss of their residuals, whose deviations are the estimate's noise.
@@ -417,6 +425,12 @@ impl Estimate {
         let triangles = self.condensed.whole();
         let squares = self.condensed.squares(&triangles, self.solution.phi.as_slice());
         squares.iter().flatten().sum()
+    }
+
+    /// What rows of each joint count by its noise in all logs; 0 where no torque was measured.
+    pub(crate) fn weights_of_joints(&self) -> Vec<f64> {
+        let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
+        self.noise_of_joints().into_iter().map(weight).collect()
     }
 
     /// The deviation of each joint's residuals in all logs; 0 where no torque was measured.

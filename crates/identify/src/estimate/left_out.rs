@@ -2,6 +2,7 @@
 //! sign of its rate says, and the filter smears that over its own time.
 
 use super::least_squares::{Method, Options};
+use super::rows::BlockMaker;
 use crate::policy::left_out::{BIAS, LEAST, NOISE};
 use denavit_measure::condition::{Butterworth, Conditioned};
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
@@ -280,6 +281,25 @@ impl LeftOut {
             self.widened.push((joint, times));
         }
         is_enough
+    }
+
+    /// Calls `visit` with joint, sample and what phi leaves of the torque of every row of a log,
+    /// and whether it counts; rests that count are beside a constant.
+    pub(super) fn for_each_left(
+        &self,
+        model: &RegressionModel,
+        own: NumberedLog<'_>,
+        phi: &[f64],
+        mut visit: impl FnMut(JointIndex, SampleIndex, f64, bool),
+    ) {
+        let all =
+            |joint: usize| self.counts(own, JointIndex(joint), SampleIndex(0), own.log.samples());
+        let counts: Vec<Option<Vec<bool>>> = (0..model.joints.len()).map(all).collect();
+        let mut maker = BlockMaker::resting(model, own.log, &self.all_rests(own));
+        maker.for_each_left(phi, |joint, sample, [.., left]| {
+            let counts = counts[joint.0].as_ref().is_none_or(|counts| counts[sample.0]);
+            visit(joint, sample, left, counts);
+        });
     }
 
     /// Which of so many samples that are left after decimation count for a joint, from `first` on,

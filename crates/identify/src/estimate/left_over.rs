@@ -4,7 +4,7 @@ use super::least_squares::Estimate;
 use super::left_out::{LeftOut, NumberedLog};
 use super::rows::BlockMaker;
 use super::unexplained::{ShownLogs, samples_of};
-use crate::policy::left_over::NO_NOISE;
+use crate::policy::left_over::{NO_NOISE, SAID};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex};
 use denavit_plants::regression::RegressionModel;
@@ -82,14 +82,10 @@ impl LeftOut {
         logs: &[Conditioned],
         phi: &[f64],
     ) -> Vec<Vec<Left>> {
-        let of_joint = |joint: usize| model.pattern()[joint].iter().map(|&at| phi[at]).collect();
-        let own: Vec<Vec<f64>> = (0..model.joints.len()).map(of_joint).collect();
         let of_log = |(number, log): (usize, &Conditioned)| {
             let apart = samples_of(log, 0.5);
-            let numbered = NumberedLog { number: LogIndex(number), log };
-            let rests = self.all_rests(numbered);
-            let mut maker = BlockMaker::resting(model, log, &rests);
-            let mut left: Vec<Left> = (0..own.len())
+            let maker = BlockMaker::new(model, log);
+            let mut left: Vec<Left> = (0..model.joints.len())
                 .map(|joint| Left {
                     apart: apart as f64,
                     friction: maker.coulomb_friction(JointIndex(joint), phi),
@@ -97,18 +93,9 @@ impl LeftOut {
                 })
                 .collect();
             let mut recent = vec![VecDeque::new(); left.len()];
-            maker.for_each(|block| {
-                for (joint, (left, recent)) in left.iter_mut().zip(&mut recent).enumerate() {
-                    let Some(all) = block.residual(JointIndex(joint), &own[joint]) else {
-                        continue;
-                    };
-                    let counts =
-                        self.counts(numbered, JointIndex(joint), block.first, block.samples);
-                    for (k, one) in all.into_iter().enumerate() {
-                        let one = counts.as_ref().is_none_or(|counts| counts[k]).then_some(one);
-                        left.add(one, recent);
-                    }
-                }
+            let own = NumberedLog { number: LogIndex(number), log };
+            self.for_each_left(model, own, phi, |joint, _, one, counts| {
+                left[joint.0].add(counts.then_some(one), &mut recent[joint.0]);
             });
             left
         };
@@ -116,20 +103,22 @@ impl LeftOut {
     }
 }
 
-/// The root of the mean square of what an estimate leaves of each joint's torque in logs, of rows
-/// that count, where that is no noise [N m, N].
-pub(crate) fn no_noise(
+/// The joints of whose torques something is left of the rows that count in logs that is no noise,
+/// with its share; `torques` are roots of mean squares [N m, N].
+pub(crate) fn lacking(
     model: &RegressionModel,
     shown_logs: ShownLogs<'_>,
     found: &Estimate,
-) -> Vec<(JointIndex, f64)> {
+    torques: &[f64],
+) -> Vec<(String, f64)> {
     let ShownLogs { logs, shown } = shown_logs;
     let left = found.left_out.left(model, logs, found.solution.phi.as_slice());
-    let of_joint = |joint: usize| {
+    let of_joint = |(joint, torque): (usize, &f64)| {
         let all = shown.iter().fold(Left::default(), |sum, &log| sum.with(&left[log.0][joint]));
-        all.is_no_noise().then(|| (JointIndex(joint), all.mean_square().sqrt()))
+        let share = all.mean_square().sqrt() / torque;
+        (all.is_no_noise() && share > SAID).then(|| (model.joints[joint].name.clone(), share))
     };
-    (0..model.joints.len()).filter_map(of_joint).collect()
+    torques.iter().enumerate().filter_map(of_joint).collect()
 }
 
 #[cfg(test)]

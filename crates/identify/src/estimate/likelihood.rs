@@ -113,8 +113,7 @@ fn of_log(
     let mut variance = vec![vec![0.0; samples]; n];
     let mut evaluator = model.evaluator();
     let (mut rows, mut motion) = (RegressionRows::default(), Vec::new());
-    let own: Vec<Vec<f64>> =
-        model.pattern().iter().map(|places| places.iter().map(|&at| phi[at]).collect()).collect();
+    let own: Vec<Vec<f64>> = (0..n).map(|joint| model.of_joint(joint, phi)).collect();
     for first in (0..samples).step_by(BLOCK * every) {
         let count = BLOCK.min(samples - first);
         log.motion_at(SampleIndex(first), count, &mut motion);

@@ -11,11 +11,11 @@ use super::condensed::{RowFactors, Rows};
 use super::least_squares::Estimate;
 use super::left_out::{LeftOut, NumberedLog};
 use super::rows::{Block, BlockMaker};
-use super::solve::{Solution, solve};
 use super::validate::validate;
 use denavit_measure::condition::{Conditioned, Piece};
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_numerics::Random;
+use denavit_numerics::least_squares::{Solution, solve};
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
@@ -70,9 +70,8 @@ pub(super) fn noise_bias(
         Noise::of_log(model, own, left_out, weights, longest, factors, &mut random)
     };
     let of_joints: Vec<Vec<DMatrix<f64>>> = logs.iter().enumerate().map(of_log).collect();
-    let of_logs: Vec<Noise> = of_joints.iter().map(|one| Noise::of_joints(one)).collect();
-    let mut all = Noise::new(model.rank());
-    of_logs.iter().for_each(|one| all.0 += &one.0);
+    let of_logs: Vec<Noise> = of_joints.iter().map(|one| Noise(one.iter().sum())).collect();
+    let all = Noise(of_logs.iter().map(|one| &one.0).sum());
     let solution = &found.solution;
     let (bias, phi) = all.bias(solution, given);
     let triangles = found.condensed.whole();
@@ -102,7 +101,8 @@ pub(super) fn bias_of_some<'a>(
     solution: &Solution,
     given: &[f64],
 ) -> DVector<f64> {
-    let mut all = Noise::new(solution.phi.len());
+    let rank = solution.phi.len();
+    let mut all = Noise(DMatrix::zeros(rank, rank + 1));
     for (one, times) in noise {
         one.of_joints.iter().zip(times).for_each(|(own, times)| all.0 += own * times);
     }
@@ -122,7 +122,7 @@ pub(super) fn noise_squares(
     if log.position_noise.iter().all(|noise| *noise == 0.0) {
         return squares;
     }
-    let of_joint = |joint: usize| model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+    let of_joint = |joint: usize| model.of_joint(joint, phi.as_slice());
     let phi: Vec<Vec<f64>> = (0..squares.len()).map(of_joint).collect();
     let rests = &left_out.all_rests(own);
     let mut random = Random::new(SEED);
@@ -153,7 +153,7 @@ pub(crate) fn noise_in_torques(
     let noise = noise_squares(model, own, &all, &DVector::from_column_slice(phi));
     let left = validate(model, phi, &[log]);
     let share = |(joint, noise): (&RegressionJoint, f64)| {
-        let torque = left.joints.iter().find(|one| one.name == joint.name)?.torque_rms;
+        let torque = left.joint(&joint.name)?.torque_rms;
         (torque > 0.0).then(|| (noise / log.samples() as f64).sqrt() / torque)
     };
     model.joints.iter().zip(noise).map(|both| share(both).unwrap_or(0.0)).collect()
@@ -202,14 +202,6 @@ fn with_noise(
 struct Noise(DMatrix<f64>);
 
 impl Noise {
-    fn new(rank: usize) -> Self {
-        Self(DMatrix::zeros(rank, rank + 1))
-    }
-
-    fn of_joints(of_joints: &[DMatrix<f64>]) -> Self {
-        Self(of_joints.iter().sum())
-    }
-
     /// That of each joint of a log, of which so many samples are looked at before decimation.
     fn of_log(
         model: &RegressionModel,
@@ -221,7 +213,8 @@ impl Noise {
         random: &mut Random,
     ) -> Vec<DMatrix<f64>> {
         let NumberedLog { number, log } = own;
-        let mut noise = vec![Self::new(model.rank()).0; model.joints.len()];
+        let rank = model.rank();
+        let mut noise = vec![DMatrix::zeros(rank, rank + 1); model.joints.len()];
         if log.position_noise.iter().all(|noise| *noise == 0.0) {
             return noise;
         }

@@ -2,10 +2,10 @@
 //! that chance explains.
 
 use super::condensed::Condensed;
-use super::errors::{FEWEST_PARTS, Problem, long_run};
-use super::solve::{DEAD, Solution, solve, stacked};
-use super::triangle::Triangle;
+use super::errors::{FEWEST_PARTS, Problem};
 use denavit_measure::{JointIndex, LogIndex};
+use denavit_numerics::least_squares::{DEAD, Solution, Triangle, solve, stacked};
+use denavit_numerics::long_run;
 use nalgebra::{DMatrix, DVector};
 
 /// Times that the weights of a log's own estimate are found anew.
@@ -67,7 +67,8 @@ impl<'a> Tested<'a> {
                 let r = triangle.matrix().view((0, 0), (places.len(), places.len()));
                 let factor = solution.factor.select_rows(places);
                 let decided = weights[joint].powi(2) * (r * factor).norm_squared();
-                let squares = triangle.squares(&of_joint(places, solution.phi.as_slice()));
+                let own = self.condensed.of_joint(JointIndex(joint), solution.phi.as_slice());
+                let squares = triangle.squares(&own);
                 let free = (independent * triangle.rows() as f64 - decided).max(f64::MIN_POSITIVE);
                 let variance = squares * independent / free;
                 let by_parts = of_parts.as_ref().map_or(0.0, |own| spread(triangle, places, own));
@@ -84,7 +85,7 @@ impl<'a> Tested<'a> {
     /// What a constant beside that of other logs, of mean `mean`, leaves of a joint's torque, of
     /// whose squares phi leaves `left`.
     pub(super) fn constant(&self, left: f64, joint: JointIndex, phi: &[f64], mean: f64) -> Own {
-        let phi = &of_joint(&self.condensed.pattern[joint.0], phi);
+        let phi = &self.condensed.of_joint(joint, phi);
         let sums = |triangle: &Triangle| [triangle.rows() as f64, triangle.sum(phi)];
         let independent = self.independent();
         let [rows, sum] = sums(&self.triangles[joint.0]);
@@ -125,11 +126,6 @@ impl<'a> Tested<'a> {
         let least = DEAD * along.singular_values.max();
         along.solve(&left, least).map_or_else(|_| phi.clone(), |along| phi + dead * along)
     }
-}
-
-/// The entries of phi that a joint's columns belong to.
-pub(super) fn of_joint(places: &[usize], phi: &[f64]) -> Vec<f64> {
-    places.iter().map(|&place| phi[place]).collect()
 }
 
 /// The squares that errors of phi make of a joint's rows in the mean.

@@ -1,11 +1,12 @@
 //! What was found, in the parameters that are reported: values, errors, and which mean something.
 
-use super::errors::interval_factor;
+use super::half_cutoff::HalfCutoff;
 use super::least_squares::Estimate;
-use super::solve::solve;
 pub(crate) use crate::policy::report::BIASING;
 use crate::policy::report::{DEAD_SHARE, LIKELY, SURE};
 use denavit_measure::PartIndex;
+use denavit_numerics::interval_factor;
+use denavit_numerics::least_squares::solve;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DVector;
 
@@ -63,25 +64,6 @@ pub struct IdentifiedParameter {
     pub status: Status,
 }
 
-/// How a parameter changes with half the cutoff of the filter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HalfCutoff {
-    /// By how much.
-    pub change: f64,
-    /// The standard deviation of that by chance.
-    pub deviation: f64,
-    /// The standard error of the parameter without what the change adds to it.
-    pub own_std: f64,
-}
-
-impl HalfCutoff {
-    /// Whether it changes by more than so many deviations by chance, and by more than an interval
-    /// without the change forgives.
-    fn is_beyond(&self, deviations: f64) -> bool {
-        self.change.abs() > (BIASING * self.own_std).max(deviations * self.deviation)
-    }
-}
-
 impl IdentifiedParameter {
     /// Whether noise of the positions biases it by more than its interval forgives.
     pub fn is_biased(&self) -> bool {
@@ -137,11 +119,7 @@ pub fn parameters(model: &RegressionModel, found: &Estimate) -> Vec<IdentifiedPa
             interval,
             degrees_of_freedom,
             noise_bias: std.filter(|std| *std > 0.0).map(|std| biases[row] / std),
-            half_cutoff: found.change.as_ref().filter(|_| !is_dead).map(|one| HalfCutoff {
-                change: one.change[row],
-                deviation: one.deviation[row],
-                own_std: one.own_errors[row],
-            }),
+            half_cutoff: found.change.as_ref().filter(|_| !is_dead).map(|all| all[row]),
             model_value: listed.value,
             status,
         }

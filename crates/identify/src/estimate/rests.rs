@@ -42,20 +42,13 @@ impl LeftOut {
         // the squares of torque and load, and their product
         let mut sums = vec![[0.0; 3]; rests.len()];
         let mut maker = BlockMaker::resting(model, own.log, &rests);
-        for (joint, (rests, sums)) in rests.iter().zip(&mut sums).enumerate() {
-            let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| values[at]).collect();
-            for rest in rests {
-                maker.for_each_of(rest.clone(), |block| {
-                    let Some(left) = block.residual(JointIndex(joint), &own) else { return };
-                    let Some([_, torque]) = &block.torque[joint] else { return };
-                    for (left, torque) in left.iter().zip(torque) {
-                        let load = torque - left;
-                        let squares = [torque * torque, load * load, torque * load];
-                        sums.iter_mut().zip(squares).for_each(|(sum, one)| *sum += one);
-                    }
-                });
+        maker.for_each_left(values, |joint, sample, [_, torque, left]| {
+            if rests[joint.0].iter().any(|rest| rest.contains(&sample.0)) {
+                let load = torque - left;
+                let squares = [torque * torque, load * load, torque * load];
+                sums[joint.0].iter_mut().zip(squares).for_each(|(sum, one)| *sum += one);
             }
-        }
+        });
         let follows = |[torque, load, both]: [f64; 3]| {
             both > 0.0 && both * both > ALIKE.powi(2) * torque * load
         };

@@ -4,12 +4,11 @@
 use super::condensed::Rows;
 use super::errors::{Errors, FEWEST_PARTS, Problem};
 use super::left_out::NumberedLog;
-use super::rows::BlockMaker;
-use super::solve::solve;
 use super::weights::ByLog;
 use crate::policy::robust::{BISQUARE, HUBER, LEAST_SLOPE};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
+use denavit_numerics::least_squares::solve;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
 
@@ -150,16 +149,9 @@ fn counted_residuals(
     mut visit: impl FnMut(JointIndex, SampleIndex, f64),
 ) {
     let own = NumberedLog { number, log: &logs[number.0] };
-    let of_joint = |places: &Vec<usize>| places.iter().map(|&at| phi[at]).collect();
-    let phi: Vec<Vec<f64>> = model.pattern().iter().map(of_joint).collect();
-    BlockMaker::resting(model, own.log, &left_out.all_rests(own)).for_each(|block| {
-        for (joint, phi) in phi.iter().enumerate() {
-            let joint = JointIndex(joint);
-            let counts = left_out.counts(own, joint, block.first, block.samples);
-            let left = block.residual(joint, phi).unwrap_or_default().into_iter().enumerate();
-            for (at, left) in left.filter(|(at, _)| counts.as_ref().is_none_or(|one| one[*at])) {
-                visit(joint, SampleIndex(block.first.0 + at), left);
-            }
+    left_out.for_each_left(model, own, phi, |joint, sample, left, counts| {
+        if counts {
+            visit(joint, sample, left);
         }
     });
 }

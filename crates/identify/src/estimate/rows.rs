@@ -180,6 +180,27 @@ impl<'a> BlockMaker<'a> {
         }
     }
 
+    /// Calls `visit` with joint, sample, torque, the same less what is known, and what phi leaves
+    /// of that, of every row that was measured.
+    pub(crate) fn for_each_left(
+        &mut self,
+        phi: &[f64],
+        mut visit: impl FnMut(JointIndex, SampleIndex, [f64; 3]),
+    ) {
+        let joints = self.model.joints.len();
+        let own: Vec<Vec<f64>> = (0..joints).map(|at| self.model.of_joint(at, phi)).collect();
+        self.for_each(|block| {
+            for (joint, own) in own.iter().enumerate() {
+                let Some([torque, target]) = &block.torque[joint] else { continue };
+                let left = block.residual(JointIndex(joint), own).unwrap_or_default();
+                for (at, left) in left.into_iter().enumerate() {
+                    let sample = SampleIndex(block.first.0 + at);
+                    visit(JointIndex(joint), sample, [torque[at], target[at], left]);
+                }
+            }
+        });
+    }
+
     /// The block of given samples.
     pub(super) fn at(&mut self, first: SampleIndex, samples: usize) -> &Block {
         self.fill(first, samples);

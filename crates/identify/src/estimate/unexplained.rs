@@ -2,6 +2,7 @@
 //! rests.
 
 use super::least_squares::Estimate;
+use super::left_over::Left;
 use super::likelihood::noise_of_positions;
 use super::rows::BlockMaker;
 use super::validate::{Validation, validate};
@@ -11,7 +12,7 @@ use crate::policy::unexplained::{
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
-use std::fmt;
+use std::collections::VecDeque;
 
 /// Samples of each log that are looked at, and in blocks of so many.
 const BLOCKS: usize = 16;
@@ -68,37 +69,10 @@ pub struct Unexplained {
     pub beside: Option<f64>,
 }
 
-impl fmt::Display for Unexplained {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (joint, percent) = (&self.joint, 100.0 * self.share);
-        write!(f, "The torque of {joint} is not explained: {percent:.0} % of it is left")?;
-        if let Some(file) = &self.file {
-            write!(f, " in {file}")?;
-        }
-        match (self.beside, self.rest_s) {
-            (Some(share), _) => {
-                return write!(
-                    f,
-                    ", without what is near reversals, and {:.1} % in the logs for the estimate: \
-                     far more than noise, the filter and errors of the parameters make. The unit \
-                     of its time or of another column may be another, or the robot, or it shows a \
-                     law that the model lacks; it does not confirm what was found.",
-                    100.0 * share
-                );
-            }
-            (None, None) => write!(
-                f,
-                ", although the joint moves. Its column may be another quantity, in another unit, \
-                 or noise, or the zero of a position may be off, or the model's geometry"
-            )?,
-            (None, Some([from, to])) => write!(
-                f,
-                ", although the joint rests, from {from:.2} to {to:.2} s, and its friction holds \
-                 less. The column of its position may be stuck while it moves, or stiction or a \
-                 brake holds it, which no equation knows"
-            )?,
-        }
-        write!(f, "; what was found is not to be believed.")
+impl Unexplained {
+    /// A joint that moves, of whose torque this share is left in all logs.
+    pub(crate) fn of(joint: &str, share: f64) -> Self {
+        Self { joint: joint.to_owned(), file: None, share, rest_s: None, beside: None }
     }
 }
 
@@ -161,17 +135,11 @@ fn moving(
 ) -> Vec<Unexplained> {
     let lag = logs.iter().map(|log| samples_of(log, 0.5)).max().unwrap_or(1);
     let of = |(((joint, moves), counted), noise): (((&RegressionJoint, bool), &f64), &f64)| {
-        let found = judged.left.joints.iter().find(|one| one.name == joint.name)?;
+        let found = judged.left.joint(&joint.name)?;
         let is_alike = found.autocorrelation.get(lag - 1).is_some_and(|one| *one > ALIKE);
         let least = if is_alike && *counted > LEFT_ALIKE { LEFT_ALIKE } else { *noise };
         let is_left = !joint.is_base && moves && found.relative > least;
-        is_left.then(|| Unexplained {
-            joint: joint.name.clone(),
-            file: None,
-            share: found.relative,
-            rest_s: None,
-            beside: None,
-        })
+        is_left.then(|| Unexplained::of(&joint.name, found.relative))
     };
     let moving = moves(model, logs);
     model.joints.iter().zip(moving).zip(judged.counted).zip(noise).filter_map(of).collect()
@@ -197,72 +165,50 @@ fn resting(
         return Vec::new();
     }
     let first_s = log.start_s + log.step_s * log.range.start as f64;
-    let of = |(joint, own): (usize, RestingJoint)| {
+    let of = |(joint, (own, beyond)): (usize, (Left, f64))| {
+        let by_chance = (own.apart / own.rows).sqrt();
+        if own.alike <= (ALIKE + by_chance) * own.both || own.both == 0.0 {
+            return None; // noise, as far as so many periods tell
+        }
         let name = &model.joints[joint].name;
-        let torque = left.joints.iter().find(|one| one.name == *name)?.torque_rms;
-        let share = own.unexplained(samples_of(log, 1.0))?.sqrt() / torque;
+        let share = (beyond / own.rows).sqrt() / left.joint(name)?.torque_rms;
         let spell = longest(&rests[joint]);
-        (share > LEFT_AT_REST).then(|| Unexplained {
-            joint: name.clone(),
-            file: None,
-            share,
-            rest_s: Some([spell.start, spell.end].map(|at| first_s + log.step_s * at as f64)),
-            beside: None,
-        })
+        let rest_s = [spell.start, spell.end].map(|at| first_s + log.step_s * at as f64);
+        let told = Unexplained { rest_s: Some(rest_s), ..Unexplained::of(name, share) };
+        (share > LEFT_AT_REST).then_some(told)
     };
     at_rest(model, log, found, &rests).into_iter().enumerate().filter_map(of).collect()
 }
 
-/// What is left of the torque of a joint that rests.
-#[derive(Clone, Default)]
-struct RestingJoint {
-    /// What is left of each sample, and whether the joint rests there.
-    left: Vec<(f64, bool)>,
-    /// What stiction holds.
-    held: f64,
-}
-
-impl RestingJoint {
-    /// The mean square of what is left at rest and stiction does not hold; none if it is noise, as
-    /// far as so many periods tell, each of so many samples.
-    fn unexplained(&self, period: usize) -> Option<f64> {
-        let beyond = |left: f64| (left.abs() - self.held).max(0.0).powi(2);
-        let at_rest = self.left.iter().filter(|(_, rests)| *rests);
-        let [rows, beyond] =
-            at_rest.fold([0.0; 2], |[rows, sum], (left, _)| [rows + 1.0, sum + beyond(*left)]);
-        let pairs = self.left.iter().zip(self.left.iter().skip(period));
-        let pairs = pairs.filter(|((_, one), (_, other))| *one && *other);
-        let [alike, all] = pairs.fold([0.0; 2], |[alike, all], ((one, _), (other, _))| {
-            [alike + one * other, all + 0.5 * (one * one + other * other)]
-        });
-        let by_chance = (period as f64 / rows).sqrt();
-        (alike > (ALIKE + by_chance) * all).then_some(beyond / rows)
-    }
-}
-
+/// What is left of the torque of each joint while it rests, compared over a period of the filter's
+/// cutoff, and the sum of the squares of what stiction does not hold of it.
 fn at_rest(
     model: &RegressionModel,
     log: &Conditioned,
     found: &Estimate,
     rests: &[Vec<bool>],
-) -> Vec<RestingJoint> {
+) -> Vec<(Left, f64)> {
     let phi = found.solution.phi.as_slice();
     // friction that is not shown holds nothing that is known
     let rows = found.solution.factor.row_iter();
     let is_shown = rows.map(|row| f64::from(u8::from(row.norm() > 0.0)));
     let shown: Vec<f64> = phi.iter().zip(is_shown).map(|(phi, is_shown)| phi * is_shown).collect();
     let mut maker = BlockMaker::new(model, log);
-    let held = |joint: usize| STICTION * maker.coulomb_friction(JointIndex(joint), &shown);
-    let mut joints: Vec<RestingJoint> = (0..rests.len())
-        .map(|joint| RestingJoint { left: Vec::new(), held: held(joint) })
-        .collect();
-    maker.for_each(|block| {
-        let places: Vec<usize> = log.places(block.first, block.samples).collect();
-        for (joint, rests) in rests.iter().enumerate().filter(|(_, rests)| !rests.is_empty()) {
-            let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
-            let left = block.residual(JointIndex(joint), &own).unwrap_or_default();
-            let rests = places.iter().map(|place| rests[place - log.range.start]);
-            joints[joint].left.extend(left.into_iter().zip(rests));
+    let apart = samples_of(log, 1.0) as f64;
+    let none = |joint: usize| {
+        let friction = maker.coulomb_friction(JointIndex(joint), &shown);
+        (Left { apart, friction, ..Left::default() }, 0.0)
+    };
+    let mut joints: Vec<(Left, f64)> = (0..rests.len()).map(none).collect();
+    let mut recent = vec![VecDeque::new(); joints.len()];
+    let places: Vec<usize> = log.places(SampleIndex(0), log.samples()).collect();
+    maker.for_each_left(phi, |joint, sample, [.., left]| {
+        let place = places[sample.0] - log.range.start;
+        let Some(&rests) = rests[joint.0].get(place) else { return };
+        let (own, beyond) = &mut joints[joint.0];
+        own.add(rests.then_some(left), &mut recent[joint.0]);
+        if rests {
+            *beyond += (left.abs() - STICTION * own.friction).max(0.0).powi(2);
         }
     });
     joints

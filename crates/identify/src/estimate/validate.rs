@@ -2,7 +2,6 @@
 
 use super::rows::BlockMaker;
 use denavit_measure::condition::Conditioned;
-use denavit_measure::{JointIndex, SampleIndex};
 use denavit_numerics::extremes;
 use denavit_plants::regression::RegressionModel;
 use std::borrow::Borrow;
@@ -103,17 +102,9 @@ pub fn validate(
     let span = samples.div_ceil(SPANS).max(1);
     for log in logs {
         sums.iter_mut().for_each(|sums| sums.recent.clear());
-        BlockMaker::new(model, log).for_each(|block| {
-            for (joint, sums) in sums.iter_mut().enumerate() {
-                let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
-                let Some(residual) = block.residual(JointIndex(joint), &own) else { continue };
-                let Some([torque, _]) = &block.torque[joint] else { continue };
-                for (k, (residual, torque)) in residual.into_iter().zip(torque).enumerate() {
-                    sums.add(residual, *torque);
-                    let time = log.time_s(SampleIndex(block.first.0 + k));
-                    sums.draw([time, *torque, torque - residual], span);
-                }
-            }
+        BlockMaker::new(model, log).for_each_left(phi, |joint, sample, [torque, _, left]| {
+            sums[joint.0].add(left, torque);
+            sums[joint.0].draw([log.time_s(sample), torque, torque - left], span);
         });
         sums.iter_mut().for_each(Sums::end_span);
     }
@@ -140,6 +131,11 @@ pub fn validate(
 }
 
 impl Validation {
+    /// What is left of a joint's torque; none where none was measured.
+    pub fn joint(&self, name: &str) -> Option<&JointResidual> {
+        self.joints.iter().find(|one| one.name == name)
+    }
+
     /// Of so many samples, of the joints whose torque was measured.
     pub(super) fn of_joints(joints: Vec<JointResidual>, samples: usize) -> Self {
         // a sum of nothing is -0, which would be shown

@@ -7,11 +7,10 @@
 
 use super::condensed::Condensed;
 use super::least_squares::Fit;
-use super::solve::Solution;
-use super::triangle::Triangle;
 pub(super) use crate::policy::weights::SETTLED;
 use crate::policy::weights::{LEAST_FREE, SHARED};
 use denavit_measure::JointIndex;
+use denavit_numerics::least_squares::{Solution, Triangle};
 
 /// Times that weights are found anew.
 pub(super) const MAX_REWEIGHTING: usize = 30;
@@ -28,7 +27,6 @@ pub(super) struct Settled {
     pub(super) solution: Solution,
     pub(super) weights: ByLog,
     pub(super) noise: ByLog,
-    pub(super) rounds: usize,
 }
 
 impl Fit<'_> {
@@ -74,7 +72,7 @@ impl Fit<'_> {
     ) -> Settled {
         let solution = self.solved(condensed, triangles, &weights);
         let noise = condensed.deviations(triangles, &solution, &weights);
-        Settled { solution, weights, noise, rounds: 1 }
+        Settled { solution, weights, noise }
     }
 
     fn settle(
@@ -83,11 +81,11 @@ impl Fit<'_> {
         triangles: &[Vec<Triangle>],
         mut found: Settled,
     ) -> Settled {
-        while found.rounds < MAX_REWEIGHTING {
+        for _ in 1..MAX_REWEIGHTING {
             let weights = condensed.reciprocal(&found.noise, triangles);
             let next = self.weighed(condensed, triangles, weights);
             let change = moved(&found.solution, &next.solution);
-            found = Settled { rounds: found.rounds + 1, ..next };
+            found = next;
             if change < SETTLED {
                 break;
             }
@@ -128,16 +126,19 @@ impl Condensed {
 
     /// Rows, as many as count like those of the log whose rows are independent most.
     pub(super) fn counted_rows(&self) -> f64 {
-        let counts = self.of_rows_alike();
-        let rows = |part: usize| self.parts[part].iter().map(Triangle::rows).sum::<usize>() as f64;
-        (0..self.parts.len()).map(|part| counts[self.log_of_part[part].0] * rows(part)).sum()
+        self.rows_by(&self.of_rows_alike())
     }
 
     /// Rows that are independent of each other.
     pub(super) fn independent_rows(&self) -> f64 {
-        let rows = |part: usize| self.parts[part].iter().map(Triangle::rows).sum::<usize>() as f64;
-        let of_part = |part: usize| self.independent[self.log_of_part[part].0] * rows(part);
-        (0..self.parts.len()).map(of_part).sum()
+        self.rows_by(&self.independent)
+    }
+
+    /// Rows, those of each log counted so.
+    fn rows_by(&self, counts: &[f64]) -> f64 {
+        let rows = |part: &Vec<Triangle>| part.iter().map(Triangle::rows).sum::<usize>() as f64;
+        let both = self.parts.iter().zip(&self.log_of_part);
+        both.map(|(part, log)| counts[log.0] * rows(part)).sum()
     }
 
     /// Weights to begin with: all alike, or torques of one size, whatever their units.

@@ -8,7 +8,7 @@
 use super::errors::Errors;
 use super::least_squares::{Estimate, Fit};
 use super::left_out::{LeftOut, SlowRows, biased_frictions};
-use crate::error::EstimateError;
+use crate::error::Error;
 use crate::policy::widening::{LEAST, SURE};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex};
@@ -31,7 +31,7 @@ impl Fit<'_> {
         &self,
         model: &RegressionModel,
         logs: &[Conditioned],
-    ) -> Result<(Estimate, LeftOut), EstimateError> {
+    ) -> Result<(Estimate, LeftOut), Error> {
         let mut fitted = self.fitted(model, logs, LeftOut::asked(model, logs, self.options))?;
         if fitted.left_out.has_rests() {
             fitted = self.without_held(model, logs, fitted)?;
@@ -62,7 +62,7 @@ impl Fit<'_> {
         model: &RegressionModel,
         logs: &[Conditioned],
         fitted: Fitted,
-    ) -> Result<Fitted, EstimateError> {
+    ) -> Result<Fitted, Error> {
         let mut asked = fitted.left_out.clone();
         for &(joint, _) in model.coulomb() {
             asked.widen(logs, JointIndex(joint), 1.0);
@@ -70,7 +70,7 @@ impl Fit<'_> {
         let of_motion = |asked: &LeftOut| {
             let motion = asked.clone().without_rests();
             let found = self.plain(model, (logs, &motion))?;
-            Ok::<_, EstimateError>(motion.left(model, logs, found.solution.phi.as_slice()))
+            Ok::<_, Error>(motion.left(model, logs, found.solution.phi.as_slice()))
         };
         let moving = match of_motion(&asked) {
             Ok(moving) => moving,
@@ -100,7 +100,7 @@ impl Fit<'_> {
         model: &RegressionModel,
         logs: &[Conditioned],
         left_out: LeftOut,
-    ) -> Result<Fitted, EstimateError> {
+    ) -> Result<Fitted, Error> {
         let found = self.plain(model, (logs, &left_out))?;
         let covariance = self.problem(&found).covariance(Errors::Correlated);
         Ok(Fitted { found, covariance, left_out })

@@ -1,15 +1,15 @@
 //! The whole log again, under the controller that the robot had.
 
 use super::{
-    Compared, Controller, Forward, ForwardJoint, ForwardKind, LONGEST_S, MotionLog, column, names,
-    rms, simulation,
+    Compared, Controller, Forward, ForwardJoint, ForwardKind, LONGEST_S, MotionLog, broken_off,
+    column, names, rms, simulation, too_short,
 };
-use crate::error::{Error, ForwardError};
+use crate::error::{Error, ErrorKind};
 use denavit_measure::SampleIndex;
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_plants::Plant;
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference};
-use denavit_simulate::{Control, DriveModelling, Log, Stop, simulate_believing};
+use denavit_simulate::{Control, DriveModelling, Log, simulate_believing};
 
 /// Simulates a log again under a controller and compares, for its first minute at most. What is
 /// simulated passes the filter of the log. A controller that compensates does so with `believed`,
@@ -26,7 +26,7 @@ pub fn closed_loop(
     let rows = (log.range.end - from).min(most.max(1));
     if rows <= 2 * settling + 1 {
         let needed_s = (2 * settling + 1) as f64 * log.step_s;
-        return Err(ForwardError::TooShort(needed_s).into());
+        return Err(too_short(needed_s));
     }
     let run = run(plant, believed, controller, log, from, rows)?;
     let kept = settling..rows - settling;
@@ -96,18 +96,15 @@ fn run(
     log: &MotionLog,
     from: usize,
     rows: usize,
-) -> Result<Log, ForwardError> {
+) -> Result<Log, Error> {
     names(plant.model())?;
     let control = following(plant, controller, log)?;
     let initial = log.state(plant.model(), SampleIndex(from), true);
     let end_s = log.time_s(SampleIndex(from + rows - 1));
     let how = simulation(DriveModelling::Model, end_s, log);
-    let run = simulate_believing(plant, believed, &control, &initial, &how);
-    let run = run.map_err(ForwardError::Start)?;
-    match run.stop {
-        Stop::End => Ok(run.log),
-        stop => Err(ForwardError::Stopped { t_s: run.end.t_s, stop }),
-    }
+    let run = simulate_believing(plant, believed, &control, &initial, &how)?;
+    broken_off(&run)?;
+    Ok(run.log)
 }
 
 /// The controller with the references of a log where it has none of its own.
@@ -115,7 +112,7 @@ fn following(
     plant: &dyn Plant,
     controller: &Controller,
     log: &MotionLog,
-) -> Result<Control, ForwardError> {
+) -> Result<Control, Error> {
     let mut control = controller.control.clone();
     let joints = control.joints.iter_mut().zip(&plant.model().joints).enumerate();
     for (index, (own, joint)) in joints {
@@ -125,11 +122,21 @@ fn following(
         if !needs {
             continue;
         }
-        let missing = || ForwardError::NoReference(joint.name.clone());
+        let missing = || {
+            let (joint, column) = (&joint.name, format!("ref_{}", joint.name));
+            let text = format!(
+                "`{joint}` is controlled and follows nothing\n  hint: give it a `reference`, or \
+                 the log a column `{column}`"
+            );
+            Error::new(ErrorKind::MissingColumn, text).of_column(column)
+        };
         let logged = log.reference[index].clone().ok_or_else(missing)?;
         let times = (0..logged.len()).map(|sample| log.time_s(SampleIndex(sample))).collect();
         let spline = CubicSpline::new(times, logged, [EndCondition::Natural; 2]);
-        let spline = spline.map_err(|_| ForwardError::BadReference(joint.name.clone()))?;
+        let spline = spline.map_err(|_| {
+            let text = format!("`ref_{}` is no motion to follow", joint.name);
+            Error::new(ErrorKind::Unsuitable, text)
+        })?;
         own.reference = Some(Reference::Cubic(spline));
     }
     Ok(control)

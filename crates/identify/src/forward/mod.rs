@@ -13,14 +13,16 @@ mod windows;
 pub use closed_loop::{closed_loop, simulated_log};
 pub use windows::{Windows, in_windows};
 
-use crate::error::ForwardError;
+use crate::error::{Error, ErrorKind};
 use denavit_measure::SampleIndex;
 use denavit_measure::condition::{Butterworth, Conditioned, Conditioning, Filter};
 use denavit_measure::log::{JointSignals, MeasuredLog};
+use denavit_numerics::{rms, short};
 use denavit_plants::PlantModel;
 use denavit_simulate::scenario::Controller;
 use denavit_simulate::{
-    DriveModelling, Log, STICTION_RATE, Simulation, State, integrate::Accuracy, integrate::Method,
+    DriveModelling, Log, Run, STICTION_RATE, Simulation, State, Stop, integrate::Accuracy,
+    integrate::Method,
 };
 use std::ops::Range;
 
@@ -298,11 +300,29 @@ impl Forward {
 }
 
 /// Names of the joints of a plant on a fixed base.
-fn names(model: &PlantModel) -> Result<Vec<&str>, ForwardError> {
+fn names(model: &PlantModel) -> Result<Vec<&str>, Error> {
     match model.joints.iter().all(|joint| joint.drivable) {
         true => Ok(model.joints.iter().map(|joint| joint.name.as_str()).collect()),
-        false => Err(ForwardError::FloatingBase),
+        false => {
+            let text = "only robots on a fixed base are simulated against their logs";
+            Err(Error::new(ErrorKind::Unsuitable, text))
+        }
     }
+}
+
+/// The log is shorter than a window of this length.
+fn too_short(length_s: f64) -> Error {
+    let text = format!("the log is shorter than a window of {} s", short(length_s));
+    Error::new(ErrorKind::TooShort, text)
+}
+
+/// Why a run did not reach its end; none if it did.
+fn broken_off(run: &Run) -> Result<(), Error> {
+    if run.stop == Stop::End {
+        return Ok(());
+    }
+    let text = format!("the simulation broke off at {:.3} s: {}", run.end.t_s, run.stop);
+    Err(Error::new(ErrorKind::BrokeOff, text))
 }
 
 /// How accurately a log is simulated again: far below what a log knows.
@@ -326,10 +346,4 @@ fn column(log: &Log, prefix: &str, joint: &str, rows: usize) -> Vec<f64> {
     // a last row that rounding kept out of the run
     values.resize(rows, values.last().copied().unwrap_or(0.0));
     values
-}
-
-fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) =
-        values.fold((0.0, 0usize), |(sum, count), value| (sum + value * value, count + 1));
-    (sum / count.max(1) as f64).sqrt()
 }

@@ -4,15 +4,15 @@
 //! and the torques are those of the motors: springs pass on what the model makes of them.
 
 use super::{
-    ACCURACY, Compared, Forward, ForwardJoint, ForwardKind, MotionLog, column, names, rms,
-    simulation,
+    ACCURACY, Compared, Forward, ForwardJoint, ForwardKind, MotionLog, broken_off, column, names,
+    rms, simulation, too_short,
 };
-use crate::error::{Error, ForwardError};
+use crate::error::{Error, ErrorKind};
 use denavit_measure::SampleIndex;
 use denavit_plants::Plant;
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference};
 use denavit_simulate::integrate::Method;
-use denavit_simulate::{Control, DriveModelling, JointControl, Simulation, Stop, simulate};
+use denavit_simulate::{Control, DriveModelling, JointControl, Simulation, simulate};
 
 /// Which windows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +45,7 @@ pub fn in_windows(
     let whole = log.range.len().saturating_sub(1) / steps;
     let count = whole.min(windows.most);
     if count == 0 {
-        return Err(ForwardError::TooShort(length_s).into());
+        return Err(too_short(length_s));
     }
     let spare = log.range.len() - 1 - count * steps;
     let begin = |k: usize| log.range.start + k * steps + spare * k / (count - 1).max(1);
@@ -60,10 +60,8 @@ pub fn in_windows(
         let how = simulation(drives, log.time_s(SampleIndex(from + steps)), log);
         // Friction that is a steep line at rest makes explicit steps short, with light links most.
         let how = Simulation { method: Method::Radau(ACCURACY), ..how };
-        let run = simulate(plant, &torques, &initial, &how).map_err(ForwardError::Start)?;
-        if run.stop != Stop::End {
-            return Err(ForwardError::Stopped { t_s: run.end.t_s, stop: run.stop }.into());
-        }
+        let run = simulate(plant, &torques, &initial, &how)?;
+        broken_off(&run)?;
         let samples = from + 1..from + steps + 1;
         t_s.extend(samples.clone().map(|sample| log.time_s(SampleIndex(sample))));
         for (index, joint) in model.joints.iter().enumerate() {
@@ -95,11 +93,18 @@ pub fn in_windows(
 }
 
 /// The measured torques, to be fed forward.
-fn given(plant: &dyn Plant, log: &MotionLog) -> Result<Control, ForwardError> {
+fn given(plant: &dyn Plant, log: &MotionLog) -> Result<Control, Error> {
     let mut control = Control::passive(plant.model().joints.len());
     let times: Vec<f64> = log.range.clone().map(|sample| log.time_s(SampleIndex(sample))).collect();
     for (index, joint) in plant.model().joints.iter().enumerate() {
-        let missing = || ForwardError::NoTorque(joint.name.clone());
+        let missing = || {
+            let text = format!(
+                "the torque of `{}` was not measured\n  hint: `options.controller` simulates \
+                 without",
+                joint.name
+            );
+            Error::new(ErrorKind::MissingColumn, text).of_column(format!("tau_{}", joint.name))
+        };
         let torque = log.torque[index].as_ref().ok_or_else(missing)?;
         let torque = torque[log.range.clone()].to_vec();
         let spline = CubicSpline::new(times.clone(), torque, [EndCondition::Natural; 2]);

@@ -11,20 +11,21 @@
 //!
 //! Both sides of each equation pass the same zero-phase filter. Residuals of motion are correlated
 //! in time, so that covariances are those of sums over blocks which are long against the
-//! correlation (a sandwich with batch means). The uncertainty of the springs goes on into the
+//! correlation, as of any estimate. The uncertainty of the springs goes on into the
 //! loads: with d = phi(k + s) - phi(k), s the deviation of k and F0 along a column of the root of
 //! their covariance, the covariance of phi grows by d d^T.
 
 mod readings;
 
-use super::error::{Error, TwoStageError};
-use super::estimate::{self, SlowRows, estimate};
+use super::error::{Error, ErrorKind};
+use super::estimate::{self, OneEquation, SlowRows, estimate};
 use denavit_measure::JointIndex;
 use denavit_measure::condition::{Conditioned, Conditioning};
 use denavit_measure::log::{JointSignals, MeasuredLog};
+use denavit_numerics::least_squares::Triangle;
+use denavit_numerics::rms;
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
 use denavit_plants::{DriveModel, PlantModel, SeriesElasticModel};
-use nalgebra::{DMatrix, DVector};
 
 /// A number with its standard deviation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -110,7 +111,8 @@ pub fn two_stage(
 ) -> Result<TwoStage, Error> {
     let elastic = elastic_joints(plant)?;
     if elastic.is_empty() {
-        return Err(TwoStageError::NoSprings.into());
+        let text = "the model has no series elastic drive";
+        return Err(Error::new(ErrorKind::Unsuitable, text));
     }
     let measured = measured(plant, &elastic, log)?;
     let names: Vec<String> = plant
@@ -119,9 +121,7 @@ pub fn two_stage(
         .map(|joint| joint.name.clone())
         .chain(elastic.iter().map(|one| format!("motor_{}", plant.joints[one.joint].name)))
         .collect();
-    let conditioned = |how: &Conditioning| {
-        Conditioned::new(measured.clone(), &names, how).map_err(TwoStageError::Condition)
-    };
+    let conditioned = |how: &Conditioning| Conditioned::new(measured.clone(), &names, how);
     let motion = Motion::new(conditioned(&how.of_springs)?, plant.joints.len());
     let mut springs = Vec::new();
     for (place, one) in elastic.iter().enumerate() {
@@ -147,13 +147,14 @@ struct Elastic {
     spring: SeriesElasticModel,
 }
 
-fn elastic_joints(plant: &PlantModel) -> Result<Vec<Elastic>, TwoStageError> {
+fn elastic_joints(plant: &PlantModel) -> Result<Vec<Elastic>, Error> {
     let mut elastic = Vec::new();
     for (joint, described) in plant.joints.iter().enumerate() {
         let Some(drive) = described.drive else { continue };
         let Some(spring) = drive.series_elastic else { continue };
         if drive.gear_ratio == 0.0 {
-            return Err(TwoStageError::NoDrive(described.name.clone()));
+            let text = format!("the drive of `{}` has no gear ratio", described.name);
+            return Err(Error::new(ErrorKind::Unsuitable, text));
         }
         elastic.push(Elastic { joint, drive, spring });
     }
@@ -165,10 +166,9 @@ fn measured(
     plant: &PlantModel,
     elastic: &[Elastic],
     log: &MeasuredLog,
-) -> Result<MeasuredLog, TwoStageError> {
+) -> Result<MeasuredLog, Error> {
     let there = |values: &Option<Vec<f64>>, prefix: &str, joint: usize| {
-        let missing =
-            || TwoStageError::MissingColumn(format!("{prefix}_{}", plant.joints[joint].name));
+        let missing = || Error::missing_column(format!("{prefix}_{}", plant.joints[joint].name));
         values.clone().ok_or_else(missing)
     };
     let mut joints = Vec::new();
@@ -257,7 +257,7 @@ impl Elastic {
         place: usize,
         law: CoulombLaw,
         slow: SlowRows,
-    ) -> Result<Spring, TwoStageError> {
+    ) -> Result<Spring, Error> {
         let [angles, rates, accelerations] = &motion.motors[place];
         readings::check_angles(name, angles, &motion.positions[self.joint], self.turns())?;
         let lever = self.spring.motor_radius / self.drive.gear_ratio;
@@ -280,12 +280,11 @@ impl Elastic {
             CoulombLaw::Sign => motion.slow(place, slow, turns),
             CoulombLaw::Tanh(_) => None,
         };
-        let (solved, covariance) = Solved::counted(&columns, &left, 1, is_left_out)
-            .ok_or_else(|| TwoStageError::NotExcited(format!("the spring of `{name}`")))?;
-        let estimate = |at: usize| Estimate {
-            value: solved.values[at],
-            std: covariance[(at, at)].max(0.0).sqrt(),
-        };
+        let all: Vec<&[f64]> = columns.iter().chain([&left]).map(Vec::as_slice).collect();
+        let OneEquation { values, covariance, residual } = solved(&all, 1, is_left_out)
+            .ok_or_else(|| not_excited(&format!("the spring of `{name}`")))?;
+        let estimate =
+            |at: usize| Estimate { value: values[at], std: covariance[(at, at)].max(0.0).sqrt() };
         let (stiffness, preload) = (estimate(2), estimate(3));
         readings::check_stiffness(name, stiffness)?;
         // r_M th / N + F0 / k = 0, to first order
@@ -303,7 +302,7 @@ impl Elastic {
             preload,
             covariance: shared,
             motor_zero: Estimate { value: zero, std: variance.max(0.0).sqrt() },
-            residual: rms(solved.residuals.as_slice()),
+            residual,
             torque: rms(&left),
         })
     }
@@ -353,7 +352,7 @@ impl Load<'_> {
         let found = estimate(self.model, &logs, &[], &self.options, &start)?;
         match found.solution.excited() == self.model.rank() {
             true => Ok(found),
-            false => Err(TwoStageError::NotExcited("the load".to_owned()).into()),
+            false => Err(not_excited("the load")),
         }
     }
 
@@ -392,88 +391,39 @@ impl Load<'_> {
     }
 }
 
-/// Least squares by QR.
-struct Solved {
-    values: DVector<f64>,
-    residuals: DVector<f64>,
-    q: DMatrix<f64>,
-    /// R^-1.
-    inverse: DMatrix<f64>,
+/// Least squares of columns, the last being what the others are to give. Of the friction in a
+/// column rows that bias it more than its error says are left out. None if a column depends on
+/// others.
+fn solved(columns: &[&[f64]], friction: usize, left_out: Option<Vec<bool>>) -> Option<OneEquation> {
+    let found = in_blocks(columns)?;
+    let Some(left_out) = left_out else { return Some(found) };
+    let count = |column: &&[f64]| -> Vec<f64> {
+        let all = column.iter().zip(&left_out).filter(|(_, left_out)| !**left_out);
+        all.map(|(entry, _)| *entry).collect()
+    };
+    let counted: Vec<Vec<f64>> = columns.iter().map(count).collect();
+    let share = 1.0 - counted[0].len() as f64 / left_out.len().max(1) as f64;
+    let variance = found.covariance[(friction, friction)];
+    let is_biased = estimate::is_biased(share, found.values[friction], variance);
+    let counted: Vec<&[f64]> = counted.iter().map(Vec::as_slice).collect();
+    Some(if is_biased { in_blocks(&counted).unwrap_or(found) } else { found })
 }
 
-impl Solved {
-    /// Of columns and what they are to give, with the covariance. Of the friction in a column rows
-    /// that bias it more than its error says are left out.
-    fn counted(
-        columns: &[Vec<f64>; 4],
-        left: &[f64],
-        friction: usize,
-        left_out: Option<Vec<bool>>,
-    ) -> Option<(Self, DMatrix<f64>)> {
-        let of = |rows: &[usize]| {
-            let x = DMatrix::from_fn(rows.len(), 4, |row, column| columns[column][rows[row]]);
-            let y = DVector::from_fn(rows.len(), |row, _| left[rows[row]]);
-            let solved = Self::new(&x, &y)?;
-            let covariance = solved.covariance();
-            Some((solved, covariance))
-        };
-        let all: Vec<usize> = (0..left.len()).collect();
-        let found = of(&all)?;
-        let Some(left_out) = left_out else { return Some(found) };
-        let counted: Vec<usize> = all.into_iter().filter(|&row| !left_out[row]).collect();
-        let share = 1.0 - counted.len() as f64 / left.len().max(1) as f64;
-        let variance = found.1[(friction, friction)];
-        let is_biased = estimate::is_biased(share, found.0.values[friction], variance);
-        Some(if is_biased { of(&counted).unwrap_or(found) } else { found })
-    }
-
-    /// None if a column depends on others.
-    fn new(x: &DMatrix<f64>, y: &DVector<f64>) -> Option<Self> {
-        if x.nrows() < x.ncols() {
-            return None;
-        }
-        let qr = x.clone().qr();
-        let (q, r) = (qr.q(), qr.r());
-        let lengths: Vec<f64> = r.column_iter().map(|column| column.norm()).collect();
-        let is_regular =
-            lengths.iter().enumerate().all(|(at, length)| r[(at, at)].abs() > 1e-11 * length);
-        let inverse = r.try_inverse().filter(|_| is_regular)?;
-        let values = &inverse * (q.transpose() * y);
-        let residuals = y - x * &values;
-        values.iter().all(|v| v.is_finite()).then_some(Self { values, residuals, q, inverse })
-    }
-
-    /// Covariance of the values, from sums of scores over blocks of time, neighbours counted half.
-    fn covariance(&self) -> DMatrix<f64> {
-        let (rows, columns) = self.q.shape();
-        let blocks = BLOCKS.min(rows / 4).max(1);
-        let score = |block: usize| {
-            let (from, to) = (block * rows / blocks, (block + 1) * rows / blocks);
-            let part = self.q.rows(from, to - from);
-            part.tr_mul(&self.residuals.rows(from, to - from))
-        };
-        let scores: Vec<DVector<f64>> = (0..blocks).map(score).collect();
-        let mut spread = DMatrix::zeros(columns, columns);
-        for score in &scores {
-            spread += score * score.transpose();
-        }
-        let alone = spread.clone();
-        for pair in scores.windows(2) {
-            let cross = &pair[0] * pair[1].transpose();
-            spread += (&cross + cross.transpose()) * 0.5;
-        }
-        let correction = blocks as f64 / (blocks as f64 - 1.0).max(1.0);
-        let of =
-            |spread: &DMatrix<f64>| correction * &self.inverse * spread * self.inverse.transpose();
-        let (mut covariance, least) = (of(&spread), of(&alone));
-        // few blocks may have neighbours that take away more than there is
-        if (0..columns).any(|at| covariance[(at, at)] < 0.25 * least[(at, at)]) {
-            covariance = least;
-        }
-        covariance
-    }
+/// The same of all rows, in blocks of time.
+fn in_blocks(columns: &[&[f64]]) -> Option<OneEquation> {
+    let rows = columns[0].len();
+    let blocks = BLOCKS.min(rows / 4).max(1);
+    let part = |block: usize| {
+        let range = block * rows / blocks..(block + 1) * rows / blocks;
+        let own: Vec<&[f64]> = columns.iter().map(|column| &column[range.clone()]).collect();
+        let mut triangle = Triangle::new(columns.len() - 1);
+        triangle.push(&own);
+        triangle
+    };
+    OneEquation::of_parts((0..blocks).map(part).collect())
 }
 
-fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
+fn not_excited(what: &str) -> Error {
+    let text = format!("the motion does not tell the parameters of {what} apart");
+    Error::new(ErrorKind::NotExcited, text)
 }

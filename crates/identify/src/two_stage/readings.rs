@@ -2,7 +2,7 @@
 //! that of the joint times the gear ratio, its torque against the spring of the model.
 
 use super::Estimate;
-use crate::error::TwoStageError;
+use crate::error::{Error, ErrorKind};
 use crate::policy::readings::{OTHER, SURE, TURNS, WRONG_SPRING};
 use std::f64::consts::TAU;
 
@@ -39,12 +39,7 @@ fn compared(found: &[f64], expected: &[f64]) -> Option<(f64, f64)> {
 }
 
 /// The angle of the motor is that of the joint times the turns of the gear, nearly.
-pub(super) fn check_angles(
-    joint: &str,
-    motor: &[f64],
-    q: &[f64],
-    turns: f64,
-) -> Result<(), TwoStageError> {
+pub(super) fn check_angles(joint: &str, motor: &[f64], q: &[f64], turns: f64) -> Result<(), Error> {
     let expected: Vec<f64> = q.iter().map(|q| turns * q).collect();
     // a joint that rests is another fault
     let Some((ratio, correlation)) = compared(motor, &expected) else { return Ok(()) };
@@ -65,7 +60,20 @@ pub(super) fn check_angles(
         true => mending(ratio, 1.33, &mistakes),
         false => None,
     };
-    Err(TwoStageError::MotorAngle { joint: joint.to_owned(), ratio, correlation, scale })
+    let hint = match scale {
+        Some((scale, why)) => format!(
+            "{why}? `logs.columns` with {{\"motor_{joint}\": {{\"scale\": {scale}}}}} mends that"
+        ),
+        None => "it is the motor's angle before the gear [rad]; gear ratio and radii are those of \
+                 the model"
+            .to_owned(),
+    };
+    let text = format!(
+        "`motor_{joint}` turns {ratio:.4} times as far as gear and `q_{joint}` say (correlation \
+         {correlation:.2})\n  hint: {hint}"
+    );
+    let error = Error::new(ErrorKind::Contradicting, text).of_column(format!("motor_{joint}"));
+    Err(error.mended_by(scale.map(|(scale, _)| scale)))
 }
 
 /// The torque of the motor is nearly what its inertia and the spring of the model need, `expected`;
@@ -75,7 +83,7 @@ pub(super) fn check_torque(
     torque: &[f64],
     expected: &[f64],
     turns: f64,
-) -> Result<(), TwoStageError> {
+) -> Result<(), Error> {
     let Some((ratio, correlation)) = compared(torque, expected) else { return Ok(()) };
     if correlation.abs() < OTHER || explains(ratio, WRONG_SPRING) {
         return Ok(());
@@ -87,18 +95,26 @@ pub(super) fn check_torque(
         (turns, "was it divided by the gear ratio twice (# torque_side: motor)"),
         (-turns, "was it divided by the gear ratio twice, with the other sign"),
     ];
-    let scale = mending(ratio, WRONG_SPRING, &mistakes);
-    let refused = |scale| TwoStageError::MotorTorque { joint: joint.to_owned(), ratio, scale };
-    scale.map_or(Ok(()), |scale| Err(refused(scale)))
+    let Some((scale, why)) = mending(ratio, WRONG_SPRING, &mistakes) else { return Ok(()) };
+    let text = format!(
+        "`tau_cmd_{joint}` is {ratio:.4} times what the inertia of the motor and the spring of the \
+         model need\n  hint: {why}? `logs.columns` with {{\"tau_cmd_{joint}\": {{\"scale\": \
+         {scale}}}}} mends that; or write a stiffness near the true one into the model"
+    );
+    let error = Error::new(ErrorKind::Contradicting, text).of_column(format!("tau_cmd_{joint}"));
+    Err(error.mended_by(Some(scale)))
 }
 
 /// The stiffness is above 0 by more than its error.
-pub(super) fn check_stiffness(joint: &str, stiffness: Estimate) -> Result<(), TwoStageError> {
-    match stiffness.value > SURE * stiffness.std {
-        true => Ok(()),
-        false => Err(TwoStageError::NoStiffness {
-            joint: joint.to_owned(),
-            stiffness: [stiffness.value, stiffness.std],
-        }),
+pub(super) fn check_stiffness(joint: &str, stiffness: Estimate) -> Result<(), Error> {
+    let Estimate { value, std } = stiffness;
+    if value > SURE * std {
+        return Ok(());
     }
+    let text = format!(
+        "the spring of `{joint}` comes out as {value:.5e} +- {std:.1e} N/m: no spring is seen\n  \
+         hint: its elongation must be large against the steps of the encoders `motor_{joint}` and \
+         `q_{joint}`"
+    );
+    Err(Error::new(ErrorKind::NotExcited, text))
 }

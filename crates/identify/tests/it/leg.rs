@@ -3,9 +3,10 @@
 
 use super::robot;
 use denavit_codegen::regressor::RegressorOptions;
-use denavit_identify::estimate::{Options, estimate, interval_factor};
+use denavit_identify::estimate::{Options, estimate};
 use denavit_measure::condition::{Conditioned, Conditioning, Filter};
 use denavit_measure::log::{JointSignals, MeasuredLog};
+use denavit_numerics::interval_factor;
 use denavit_plants::regression::RegressionModel;
 use denavit_plants::shipped;
 use denavit_simulate::{Log, scenario};

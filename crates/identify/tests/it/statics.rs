@@ -2,9 +2,9 @@
 
 use super::robot;
 use denavit_codegen::regressor::RegressorOptions;
-use denavit_identify::knowledge::Knowledge;
-use denavit_identify::statics::{HoldingTorque, StaticMeasurement, static_knowledge};
+use denavit_identify::statics::{HoldingTorque, StaticMeasurement, add_estimate, static_knowledge};
 use denavit_identify::{Error, ErrorKind};
+use denavit_numerics::Equations;
 use denavit_numerics::Random;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
@@ -121,14 +121,15 @@ fn a_scale_splits_base_parameters() {
     let model = arm();
     let phi = model.model_axes().expect("the model has values");
     let covariance = DMatrix::from_diagonal_element(phi.len(), phi.len(), 1e-6);
-    let mut dynamic = Knowledge::none(model.standard.len());
-    assert!(dynamic.add_estimate(&model, &phi, &covariance));
+    let mut dynamic = Equations::none(model.standard.len());
+    assert!(add_estimate(&mut dynamic, &model, &phi, &covariance));
     let alone = dynamic.consequences();
     assert_eq!(alone.combinations.len(), model.rank());
     assert!(alone.parameters[place(&model, "m_link1")].is_none());
     let scale = [weighing(&["link1"], 2.0), weighing(&["link2"], 1.5)];
-    dynamic.join(&static_knowledge(&model, &scale).expect("sound"));
-    let joined = dynamic.consequences();
+    let mut both = static_knowledge(&model, &scale).expect("sound");
+    assert!(add_estimate(&mut both, &model, &phi, &covariance));
+    let joined = both.consequences();
     for name in ["m_link1", "m_link2", "mx_link1", "mx_link2", "Izz_link1", "Izz_link2"] {
         let at = place(&model, name);
         let (value, std) = joined.parameters[at].expect(name);

@@ -1,8 +1,8 @@
 //! Wrenches on links from outside.
 
 use super::robot;
-use denavit_identify::{add_contact_forces, add_wrenches};
 use denavit_measure::log::{JointSignals, LogRemark, MeasuredLog};
+use denavit_measure::{add_contact_forces, add_wrenches};
 use denavit_numerics::Random;
 use denavit_plants::{plant_of, point_positions};
 

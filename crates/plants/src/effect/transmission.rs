@@ -18,7 +18,7 @@
 use super::program::LawProgram;
 use super::{EffectLaw, JointSamples, LawParameter, names};
 use crate::error::Error;
-use crate::regression::{RegressionModel, RegressionRows};
+use crate::regression::RegressionModel;
 use denavit_codegen::effect::{Effect, Transmission};
 use denavit_codegen::expr::Dag;
 
@@ -41,17 +41,13 @@ impl Drive {
     /// 2 of one joint.
     pub fn all(model: &RegressionModel, phi: &[f64]) -> Vec<Self> {
         let joints = model.joints.len();
-        let (mut evaluator, mut rows) = (model.evaluator(), RegressionRows::default());
         let of = |joint: usize| {
-            let mut motion = vec![[0.0; 4]; 3 * joints];
-            motion[joints + joint] = [0.0, 0.0, 1.0, 2.0];
-            motion[2 * joints + joint] = [0.0, 1.0, 0.0, 0.0];
-            let motion: Vec<&[f64]> = motion.iter().map(<[f64; 4]>::as_slice).collect();
-            evaluator.evaluate(&motion, &mut rows).expect("three columns for each joint");
-            let own: Vec<f64> = model.pattern()[joint].iter().map(|&place| phi[place]).collect();
-            let mut torque = [0.0; 4];
-            rows.torque(joint, &own, &mut torque);
-            let [offset, accelerated, slow, fast] = torque;
+            let mut motion = vec![vec![0.0; 4]; 3 * joints];
+            motion[joints + joint] = vec![0.0, 0.0, 1.0, 2.0];
+            motion[2 * joints + joint] = vec![0.0, 1.0, 0.0, 0.0];
+            let &[offset, accelerated, slow, fast] = &model.torques(&motion, phi)[joint][..] else {
+                unreachable!("a torque for each sample")
+            };
             let viscous = fast - slow;
             let coulomb = slow - offset - viscous;
             Self { inertia: accelerated - offset, viscous, coulomb, offset }

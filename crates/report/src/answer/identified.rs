@@ -1,5 +1,6 @@
 //! What was identified, as a table.
 
+use crate::identification::{notes, warnings};
 use crate::{Align, Table, paragraph, short};
 use denavit_identify::estimate::{IdentifiedParameter, JointResidual, Status};
 use denavit_identify::forward::Forward;
@@ -17,7 +18,7 @@ fn write_doubts(out: &mut String, shown: &Identified) -> fmt::Result {
     for (file, remark) in &shown.remarks {
         writeln!(out, "{file}: {remark}")?;
     }
-    for text in shown.found.notes().into_iter().chain(shown.found.warnings()) {
+    for text in notes(&shown.found).into_iter().chain(warnings(&shown.found)) {
         writeln!(out, "{}", paragraph("", "", &text))?;
     }
     Ok(())
@@ -55,7 +56,7 @@ fn write(out: &mut String, shown: &Identified) -> fmt::Result {
     if let Some(gap) = &shown.simulated {
         write_simulation(out, gap)?;
     }
-    for text in found.notes().into_iter().chain(found.warnings()) {
+    for text in notes(found).into_iter().chain(warnings(found)) {
         writeln!(out, "\n{}", paragraph("", "", &text))?;
     }
     write_nearest(out, found.consistent.distance)
@@ -129,10 +130,7 @@ fn write_residuals(out: &mut String, shown: &Identified) -> fmt::Result {
         ("residual", Align::Right),
         ("correlation", Align::Right),
     ]);
-    let held_out = |joint: &JointResidual| {
-        let joints = &found.validate.as_ref()?.joints;
-        joints.iter().find(|other| other.name == joint.name)
-    };
+    let held_out = |joint: &JointResidual| found.validate.as_ref()?.joint(&joint.name);
     let percent = |share: f64| format!("{:.2} %", 100.0 * share);
     for joint in &found.train.joints {
         let other = held_out(joint);

@@ -1,5 +1,6 @@
 //! What was identified, as JSON.
 
+use crate::identification::warnings;
 use denavit_identify::estimate::{Consistent, IdentifiedParameter, JointResidual, Status};
 use denavit_identify::forward::{Compared, Forward, ForwardJoint, ForwardKind};
 use denavit_plants::regression::{RegressionModel, StandardParameter};
@@ -226,8 +227,7 @@ pub fn identified_json(shown: &Identified) -> impl Serialize + '_ {
     let Identified { robot, model, found, remarks, effects, simulated, .. } = shown;
     let parameters = found.parameters.iter().map(ParameterJson::new);
     let held_out = |joint: &JointResidual| {
-        let joints = &found.validate.as_ref()?.joints;
-        joints.iter().find(|other| other.name == joint.name).map(|other| other.relative)
+        found.validate.as_ref()?.joint(&joint.name).map(|other| other.relative)
     };
     let joints = found.train.joints.iter().map(|joint| JointJson {
         joint: &joint.name,
@@ -280,7 +280,7 @@ pub fn identified_json(shown: &Identified) -> impl Serialize + '_ {
         remarks: remarks
             .iter()
             .map(|(file, remark)| format!("{file}: {remark}"))
-            .chain(found.warnings())
+            .chain(warnings(found))
             .collect(),
     }
 }

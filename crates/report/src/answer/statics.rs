@@ -1,7 +1,8 @@
 //! What follows from measurements at rest, as a table of text and as JSON.
 
+use crate::identification::warnings;
 use crate::{Align, Table, paragraph, short};
-use denavit_identify::knowledge::Determined;
+use denavit_numerics::Determined;
 use denavit_plants::regression::RegressionModel;
 use denavit_workflow::StaticsFound;
 use serde_json::json;
@@ -17,6 +18,13 @@ pub fn statics_text(all: &StaticsFound) -> String {
 /// What is said of equations that cannot all be true.
 const CONTRADICTION: &str = " They contradict each other: a measurement, its sign, its unit or its \
                              deviation is wrong, and what follows is not to be used.";
+
+/// What is to be said of logs, and of what does not follow.
+fn remarks(all: &StaticsFound) -> Vec<String> {
+    let of_logs = all.of_logs.iter().flat_map(|found| warnings(found));
+    let reasons = all.reasons.iter().map(|&reason| reason.to_owned());
+    all.remarks.iter().cloned().chain(of_logs).chain(reasons).collect()
+}
 
 /// A combination as a sum.
 fn sum(model: &RegressionModel, one: &Determined) -> String {
@@ -37,9 +45,9 @@ fn sum(model: &RegressionModel, one: &Determined) -> String {
 }
 
 fn write(out: &mut String, all: &StaticsFound) -> fmt::Result {
-    let StaticsFound { model, knowledge, found, remarks, .. } = all;
-    for remark in remarks {
-        writeln!(out, "{}\n", paragraph("", "", remark))?;
+    let StaticsFound { model, knowledge, found, .. } = all;
+    for remark in remarks(all) {
+        writeln!(out, "{}\n", paragraph("", "", &remark))?;
     }
     let alone = found.parameters.iter().flatten().count();
     writeln!(
@@ -47,7 +55,7 @@ fn write(out: &mut String, all: &StaticsFound) -> fmt::Result {
         "{}: {} equations determine {} combinations of {} parameters, of which {alone} stand \
          alone\n",
         model.model,
-        knowledge.equations(),
+        knowledge.count(),
         found.combinations.len(),
         model.standard.len(),
     )?;
@@ -90,7 +98,7 @@ fn write(out: &mut String, all: &StaticsFound) -> fmt::Result {
 
 /// What follows from measurements at rest, as JSON (docs/reference/identification.md).
 pub fn statics_json(all: &StaticsFound) -> serde_json::Value {
-    let StaticsFound { model, knowledge, found, remarks, .. } = all;
+    let StaticsFound { model, knowledge, found, .. } = all;
     let parameters = model.standard.iter().zip(&found.parameters);
     let parameters = parameters.map(|(one, follows)| {
         json!({
@@ -110,12 +118,12 @@ pub fn statics_json(all: &StaticsFound) -> serde_json::Value {
     });
     json!({
         "model": model.model,
-        "equations": knowledge.equations(),
+        "equations": knowledge.count(),
         "parameters": parameters.collect::<Vec<_>>(),
         "combinations": combinations.collect::<Vec<_>>(),
         "chi_squared": found.chi_squared,
         "degrees_of_freedom": found.degrees_of_freedom,
         "contradicts": found.contradicts(),
-        "remarks": remarks,
+        "remarks": remarks(all),
     })
 }

@@ -1,11 +1,13 @@
 //! What was identified, as a page.
 
 mod curves;
+mod doubts;
 mod parameters;
 mod shown_by;
 mod simulation;
 
 pub(super) use curves::torques;
+pub(crate) use doubts::{notes, warnings};
 pub(super) use parameters::base_parameters;
 
 use super::html::{
@@ -14,7 +16,7 @@ use super::html::{
 use super::short;
 use curves::{condition, convergence};
 use denavit_codegen::model::Robot;
-use denavit_identify::estimate::{JointResidual, Status, Validation};
+use denavit_identify::estimate::{Status, Validation};
 use denavit_identify::forward::Forward;
 use denavit_identify::{Identification, UpdatedModel};
 use denavit_plants::regression::RegressionModel;
@@ -94,7 +96,7 @@ impl IdentificationPage<'_> {
                 (Grade::Bad, text)
             }
             true => {
-                let is_said = found.warnings().is_empty() && found.lacking.is_empty();
+                let is_said = warnings(found).is_empty() && found.lacking.is_empty();
                 let is_clear = hidden == 0 && is_said;
                 let grade = if is_clear { Grade::Good } else { Grade::Fair };
                 (grade, format!("The parameters explain all but {left} of the torques of {whose}"))
@@ -128,13 +130,13 @@ impl IdentificationPage<'_> {
     fn warnings(&self) -> Option<Section> {
         let found = self.found;
         let nearest = Some(nearest_bodies(found.consistent.distance)).filter(|one| !one.is_empty());
-        let warnings = found.warnings().into_iter().chain(nearest.filter(|_| {
+        let warnings = warnings(found).into_iter().chain(nearest.filter(|_| {
             // said by the warnings, unless noise makes most
-            found.no_bodies().is_none()
+            !found.is_of_no_bodies()
         }));
         let mut parts: Vec<Part> = warnings.map(|text| Part::Paragraph { text }).collect();
         let notes: Vec<Part> =
-            found.notes().into_iter().map(|text| Part::Paragraph { text }).collect();
+            notes(found).into_iter().map(|text| Part::Paragraph { text }).collect();
         if !notes.is_empty() {
             let summary = "Samples that were left out, and what is left without a name".to_owned();
             parts.push(Part::Folded { summary, parts: notes });
@@ -191,7 +193,7 @@ pub(super) fn residuals(train: &Validation, held_out: Option<&Validation>) -> Se
         ("correlation with the next sample", true),
     ]);
     let rows = train.joints.iter().map(|joint| {
-        let other = held_out.and_then(|all| find(all, &joint.name));
+        let other = held_out.and_then(|all| all.joint(&joint.name));
         let number = |value: f64| Cell::number(value, short(value));
         let next = joint.autocorrelation.first().copied().unwrap_or(0.0);
         let cells = vec![
@@ -236,10 +238,6 @@ pub(super) fn headings(list: &[(&str, bool)]) -> Vec<Heading> {
     let heading =
         |&(text, is_number): &(&str, bool)| Heading { heading: text.to_owned(), is_number };
     list.iter().map(heading).collect()
-}
-
-fn find<'a>(validation: &'a Validation, joint: &str) -> Option<&'a JointResidual> {
-    validation.joints.iter().find(|other| other.name == joint)
 }
 
 pub(super) fn percent(share: f64) -> String {

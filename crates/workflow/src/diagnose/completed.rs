@@ -4,7 +4,7 @@ use super::Diagnosed;
 use crate::error::{Cause, Error};
 use crate::files::Files;
 use denavit_codegen::effect;
-use denavit_identify::{EffectValues, NewEffect, with_effects};
+use denavit_plants::model_text::{EffectValues, NewEffect, with_effects};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -7,10 +7,9 @@ use crate::logs::LogSource;
 use crate::observer::Reading;
 use denavit_identify::estimate::Method;
 use denavit_identify::forward::{LONGEST_S, MotionLog};
-use denavit_identify::{
-    Ground, leave_out_idle_motors, take_out, undo_logged_torques, undo_readings,
-};
+use denavit_identify::{leave_out_idle_motors, take_out, undo_logged_torques, undo_readings};
 use denavit_measure::ErrorKind;
+use denavit_measure::Ground;
 use denavit_measure::condition::{Conditioned, Conditioning, Filter, Stretch};
 use denavit_measure::log::{LogFault, LogFaults, LogRemark, MeasuredLog};
 use denavit_measure::{JointIndex, Split};

@@ -1,6 +1,6 @@
 //! What a model's standard deviations say of base parameters.
 
-use denavit_identify::estimate::PriorRow;
+use denavit_numerics::least_squares::PriorRow;
 use denavit_plants::regression::{RegressionModel, RegressionParameter};
 
 /// What the model's standard deviations say of base parameters: those that depend on no number

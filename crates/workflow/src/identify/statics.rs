@@ -1,13 +1,14 @@
 //! Weighings and held postures (thesis 3.2.1), joined with logs.
 
+use super::statics_file::read_statics;
 use super::{Identified, IdentifyOptions, identify, regression};
 use crate::error::{Cause, Error};
 use crate::logs::Logs;
 use crate::observer::Observer;
 use crate::robot_file::RobotFile;
-use denavit_identify::knowledge::{Consequences, Knowledge};
-use denavit_identify::read_statics;
-use denavit_identify::statics::{check_units, static_knowledge};
+use denavit_identify::Identification;
+use denavit_identify::statics::{add_estimate, check_units, static_knowledge};
+use denavit_numerics::{Consequences, Equations};
 use denavit_plants::regression::RegressionModel;
 
 /// What follows from measurements at rest.
@@ -16,11 +17,15 @@ pub struct StaticsFound {
     /// Parameters and their columns.
     pub model: RegressionModel,
     /// The equations.
-    pub knowledge: Knowledge,
+    pub knowledge: Equations,
     /// What follows from them.
     pub found: Consequences,
-    /// What was noticed.
+    /// What was noticed of the logs.
     pub remarks: Vec<String>,
+    /// What these say by themselves, if there are any.
+    pub of_logs: Option<Box<Identification>>,
+    /// Why less follows than might.
+    pub reasons: Vec<&'static str>,
     /// Whether the observer stopped the work on the logs, as [`Identified::is_stopped`] says.
     pub is_stopped: bool,
 }
@@ -55,23 +60,23 @@ pub fn identify_statics(
         check_units(&model, &measured).map_err(wrong)?;
     }
     let mut knowledge = static_knowledge(&model, &measured).map_err(wrong)?;
-    let mut remarks = Vec::new();
-    let mut is_stopped = false;
+    let (mut remarks, mut reasons) = (Vec::new(), Vec::new());
+    let (mut of_logs, mut is_stopped) = (None, false);
     if !logs.train.is_empty() {
         let identified = identify(robot, logs, options, observer)?;
         is_stopped = identified.is_stopped;
         remarks.extend(identified.remarks.iter().map(|(file, one)| format!("{file}: {one}")));
-        remarks.extend(identified.found.warnings());
-        remarks.extend(join(&model, &identified, &mut knowledge).map(str::to_owned));
+        reasons.extend(join(&model, &identified, &mut knowledge));
+        of_logs = Some(Box::new(identified.found));
     }
     let found = knowledge.consequences();
-    remarks.extend(nothing_follows(&knowledge, &found).map(str::to_owned));
-    Ok(StaticsFound { model, knowledge, found, remarks, is_stopped })
+    reasons.extend(nothing_follows(&knowledge, &found));
+    Ok(StaticsFound { model, knowledge, found, remarks, of_logs, reasons, is_stopped })
 }
 
 /// Why nothing follows, if nothing does.
-fn nothing_follows(knowledge: &Knowledge, found: &Consequences) -> Option<&'static str> {
-    match (knowledge.equations(), found.combinations.len()) {
+fn nothing_follows(knowledge: &Equations, found: &Consequences) -> Option<&'static str> {
+    match (knowledge.count(), found.combinations.len()) {
         (0, _) => Some(
             "Nothing follows: the file has neither weighings nor torques of postures, and no log \
              says more. `denavit schema statics` prints what it may have.",
@@ -88,11 +93,11 @@ fn nothing_follows(knowledge: &Knowledge, found: &Consequences) -> Option<&'stat
 fn join(
     model: &RegressionModel,
     identified: &Identified,
-    knowledge: &mut Knowledge,
+    knowledge: &mut Equations,
 ) -> Option<&'static str> {
     let estimate = &identified.found.estimate;
     let phi = estimate.solution.phi.as_slice();
-    let is_joined = knowledge.add_estimate(model, phi, &estimate.covariance);
+    let is_joined = add_estimate(knowledge, model, phi, &estimate.covariance);
     (!is_joined).then_some(
         "The logs leave directions of the parameters open: they are not joined with the \
          measurements at rest.",

@@ -13,10 +13,11 @@ use denavit_identify::estimate::{
     Consistent, IdentifiedParameter, JointResidual, Validation, consistent, parameters, validate,
 };
 use denavit_identify::two_stage::{Estimate, TwoStage, TwoStageOptions, two_stage};
-use denavit_identify::{NewValue, updated_model, updated_text};
+use denavit_identify::updated_model;
 use denavit_measure::condition::{Conditioning, Filter};
 use denavit_measure::log::{LogRemark, MeasuredLog};
 use denavit_numerics::short;
+use denavit_plants::model_text::{NewValue, with_values};
 use denavit_plants::plant_of;
 use denavit_plants::regression::{ModelParameter, RegressionModel};
 
@@ -183,7 +184,7 @@ impl TwoStageFound {
                 std: Some(estimate.std).filter(|std| *std > 0.0 && estimate.value >= 0.0),
             })
             .collect();
-        let text = updated_text(&updated.text, &new)
+        let text = with_values(&updated.text, &new)
             .ok_or_else(|| Cause::Update(denavit_identify::Error::no_place(&robot.name)))?;
         model::read("the identified model", text.as_bytes()).map_err(Cause::Model)?;
         Ok(text)

@@ -7,15 +7,15 @@
 mod text;
 
 use super::condensed::{Condensed, PARTS, part_length, plain};
-use super::half_cutoff::SAMPLES;
+use super::half_cutoff::{SAMPLES, widen};
 use super::least_squares::{Estimate, Fit, Method, Options};
 use super::left_out::{LeftOut, SlowRows};
 use super::rows::BlockMaker;
-use super::triangle::Triangle;
 use super::validate::{JointResidual, Validation};
 use crate::error::Error;
 use denavit_measure::condition::{Conditioned, Piece};
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
+use denavit_numerics::least_squares::Triangle;
 use denavit_plants::regression::{CoulombLaw, RegressionJoint, RegressionModel};
 
 /// What the head of a long log says of the rows of the rest.
@@ -49,15 +49,8 @@ pub fn pieces(stretches: usize) -> usize {
 
 /// Rows of one log that has no parts yet.
 fn no_parts(model: &RegressionModel, independent: f64, row_s: f64) -> Condensed {
-    Condensed {
-        pattern: model.pattern().to_vec(),
-        parts: Vec::new(),
-        log_of_part: Vec::new(),
-        end_s: Vec::new(),
-        independent: vec![independent],
-        row_s: vec![row_s],
-        rank: model.rank(),
-    }
+    let columns = (model.pattern().to_vec(), model.rank());
+    Condensed::without_parts(columns, vec![independent], vec![row_s])
 }
 
 /// Adds parts that come later, or rows of the part that is the last.
@@ -186,7 +179,7 @@ impl LongRows {
     ) -> Validation {
         let one = |(at, joint): (usize, &RegressionJoint)| {
             let rows = self.all[at].rows();
-            let of_head = head.joints.iter().find(|one| one.name == joint.name);
+            let of_head = head.joint(&joint.name);
             let rms = |squares: f64| (squares / rows as f64).sqrt();
             let own = self.condensed.of_joint(JointIndex(at), phi);
             let residual_rms = rms(self.all[at].squares(&own));
@@ -279,7 +272,7 @@ impl Estimate {
         let halved = rows.halved.clone();
         let mut change = fit.change_of(model, halved, &found.weights, &found);
         if let Some(change) = &mut change {
-            change.widen(model, &mut found.covariance);
+            widen(change, model, &mut found.covariance);
         }
         Ok(Self {
             noise_bias: self.noise_bias,

@@ -2,11 +2,11 @@
 //! elsewhere. Numbers are printed with all their digits, and read as they were.
 
 use super::super::condensed::Condensed;
-use super::super::triangle::Triangle;
 use super::LongRows;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::policy::long::LARGEST;
 use denavit_measure::LogIndex;
+use denavit_numerics::least_squares::Triangle;
 use denavit_plants::regression::RegressionModel;
 use serde_json::{Value, json};
 use std::fmt;
@@ -15,7 +15,7 @@ use std::fmt;
 const MOST_ROWS: usize = 1 << 52;
 
 fn wrong(reason: impl fmt::Display) -> Error {
-    Error::of_piece(reason.to_string())
+    Error::new(ErrorKind::Piece, reason.to_string())
 }
 
 impl LongRows {
@@ -25,7 +25,7 @@ impl LongRows {
         json!({
             "counted": condensed_json(condensed),
             "halved": halved.each_ref().map(condensed_json),
-            "all": all.iter().map(Triangle::to_json).collect::<Vec<_>>(),
+            "all": all.iter().map(triangle_json).collect::<Vec<_>>(),
             "torque_squares": torque_squares,
             "samples": samples,
         })
@@ -55,7 +55,7 @@ impl LongRows {
 
 fn condensed_json(condensed: &Condensed) -> Value {
     let parts = condensed.parts.iter().map(|part| {
-        let joints: Vec<Value> = part.iter().map(Triangle::to_json).collect();
+        let joints: Vec<Value> = part.iter().map(triangle_json).collect();
         Value::from(joints)
     });
     json!({
@@ -98,7 +98,7 @@ fn of_joints(model: &RegressionModel, value: &Value) -> Result<Vec<Triangle>, Er
         return Err(wrong(format!("it has {its} joints, and the model {own}")));
     }
     let both = joints.iter().zip(pattern);
-    both.map(|(one, places)| Triangle::of_json(one, places.len())).collect()
+    both.map(|(one, places)| triangle_of_json(one, places.len())).collect()
 }
 
 fn list<'a>(value: &'a Value, what: &str) -> Result<&'a Vec<Value>, Error> {
@@ -115,30 +115,28 @@ fn numbers(value: &Value, count: usize, what: &str) -> Result<Vec<f64>, Error> {
     }
 }
 
-impl Triangle {
-    fn to_json(&self) -> Value {
-        let size = self.width() + 1;
-        let entry = |(row, column): (usize, usize)| self.matrix()[(row, column)];
-        let places = (0..size).flat_map(|column| (0..=column).map(move |row| (row, column)));
-        json!({
-            "rows": self.rows(),
-            "r": places.map(entry).collect::<Vec<_>>(),
-            "sums": self.sums().as_slice(),
-        })
-    }
+fn triangle_json(one: &Triangle) -> Value {
+    let size = one.width() + 1;
+    let entry = |(row, column): (usize, usize)| one.matrix()[(row, column)];
+    let places = (0..size).flat_map(|column| (0..=column).map(move |row| (row, column)));
+    json!({
+        "rows": one.rows(),
+        "r": places.map(entry).collect::<Vec<_>>(),
+        "sums": one.sums().as_slice(),
+    })
+}
 
-    fn of_json(value: &Value, width: usize) -> Result<Self, Error> {
-        let size = width + 1;
-        let rows = value["rows"].as_u64().and_then(|rows| usize::try_from(rows).ok());
-        let rows = rows.ok_or_else(|| wrong("`rows` is no count"))?;
-        let entries = numbers(&value["r"], size * (size + 1) / 2, "`r`")?;
-        let sums = numbers(&value["sums"], size, "`sums`")?;
-        let is_empty = entries.iter().chain(&sums).all(|entry| *entry == 0.0);
-        // their squares are to be numbers, and no rows are no sums
-        let is_possible = entries.iter().all(|entry| entry.abs() < LARGEST);
-        if !is_possible || rows == 0 && !is_empty || rows > MOST_ROWS {
-            return Err(wrong("a triangle that no rows have"));
-        }
-        Ok(Self::of_entries(&entries, sums, rows))
+fn triangle_of_json(value: &Value, width: usize) -> Result<Triangle, Error> {
+    let size = width + 1;
+    let rows = value["rows"].as_u64().and_then(|rows| usize::try_from(rows).ok());
+    let rows = rows.ok_or_else(|| wrong("`rows` is no count"))?;
+    let entries = numbers(&value["r"], size * (size + 1) / 2, "`r`")?;
+    let sums = numbers(&value["sums"], size, "`sums`")?;
+    let is_empty = entries.iter().chain(&sums).all(|entry| *entry == 0.0);
+    // their squares are to be numbers, and no rows are no sums
+    let is_possible = entries.iter().all(|entry| entry.abs() < LARGEST);
+    if !is_possible || rows == 0 && !is_empty || rows > MOST_ROWS {
+        return Err(wrong("a triangle that no rows have"));
     }
+    Ok(Triangle::of_entries(&entries, sums, rows))
 }

@@ -1,6 +1,6 @@
 //! What the rows of a reading say: the evidence of a model whose values are known more or less.
 
-use super::super::policy;
+use super::policy;
 use super::sample::JointRows;
 use crate::estimate::{is_of_joints, nominal_values};
 use denavit_codegen::model::JointEntry;

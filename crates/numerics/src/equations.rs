@@ -1,30 +1,32 @@
-//! What is known of the standard parameters theta0, from any source, as linear equations with
-//! errors: A theta0 = b + e, each row divided by the standard deviation of its error.
+//! Linear equations with errors, A x = b + e, and what follows from them, whatever their rank.
 //!
-//! Weighings, gravity torques of held postures, a dynamic estimate of base parameters with its
-//! covariance, values that a drawing gives with an uncertainty: all are rows, and joining them is
-//! putting them below each other. Least squares in all rows at once is then the same as carrying
-//! one result into the other as a prior (ridge towards given values with their uncertainty), and
-//! does not ask which came first.
+//! Whatever is known of unknowns, from any source, is rows, and joining it is putting them below
+//! each other. Least squares in all rows at once is then the same as carrying one result into the
+//! other as a prior (ridge towards given values with their uncertainty), and does not ask which
+//! came first.
 //!
-//! Rows rarely determine every parameter. Which combinations of parameters follow is read off the
-//! row space; a parameter follows by itself if its unit vector is in it.
+//! Rows rarely determine every unknown. Which combinations follow is read off the row space; an
+//! unknown follows by itself if its unit vector is in it.
 
-use crate::policy::knowledge::{RANK_TOLERANCE, ROUNDING};
-use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 
-/// Equations of standard parameters, each of unit error.
+/// Parts of a row space below this, of the largest, are rounding.
+const RANK_TOLERANCE: f64 = 1e-10;
+
+/// Below this share of its column an entry of a reduced system is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Equations, each divided by the standard deviation of its error.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Knowledge {
+pub struct Equations {
     rows: DMatrix<f64>,
     values: DVector<f64>,
 }
 
-/// A parameter, or a combination of parameters, that follows.
+/// An unknown, or a combination of unknowns, that follows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Determined {
-    /// Parameters by their place, with factors; the first factor is 1.
+    /// Unknowns by their place, with factors; the first factor is 1.
     pub members: Vec<(usize, f64)>,
     /// Its value.
     pub value: f64,
@@ -32,12 +34,12 @@ pub struct Determined {
     pub std: f64,
 }
 
-/// What follows from knowledge.
+/// What follows from equations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Consequences {
-    /// For each standard parameter its value and standard deviation, if it follows by itself.
+    /// For each unknown its value and standard deviation, if it follows by itself.
     pub parameters: Vec<Option<(f64, f64)>>,
-    /// As many combinations as are independent, each with a parameter that no other has.
+    /// As many combinations as are independent, each with an unknown that no other has.
     pub combinations: Vec<Determined>,
     /// Sum of squares of what the equations miss, in standard deviations.
     pub chi_squared: f64,
@@ -59,94 +61,55 @@ impl Consequences {
     }
 }
 
-impl Knowledge {
-    /// Nothing, of so many parameters.
-    pub fn none(parameters: usize) -> Self {
-        Self { rows: DMatrix::zeros(0, parameters), values: DVector::zeros(0) }
+impl Equations {
+    /// None, of so many unknowns.
+    pub fn none(unknowns: usize) -> Self {
+        Self { rows: DMatrix::zeros(0, unknowns), values: DVector::zeros(0) }
     }
 
-    /// Number of parameters.
-    pub fn parameters(&self) -> usize {
-        self.rows.ncols()
-    }
-
-    /// Number of equations.
-    pub fn equations(&self) -> usize {
+    /// Their number.
+    pub fn count(&self) -> usize {
         self.rows.nrows()
     }
 
-    /// Adds the equation that a combination of parameters has a value, with a positive standard
+    /// Adds the equation that a combination of unknowns has a value, with a positive standard
     /// deviation.
     ///
     /// # Panics
-    /// If a parameter is none of those that this is about, or the deviation not positive.
+    /// If an unknown is none of those that this is about, or the deviation not positive.
     pub fn add(&mut self, members: &[(usize, f64)], value: f64, std: f64) {
         assert!(std > 0.0, "an equation without error cannot be weighed against others");
         let at = self.rows.nrows();
         self.rows.resize_vertically_mut(at + 1, 0.0);
-        for &(parameter, factor) in members {
-            self.rows[(at, parameter)] += factor / std;
+        for &(unknown, factor) in members {
+            self.rows[(at, unknown)] += factor / std;
         }
         self.values.resize_vertically_mut(at + 1, value / std);
     }
 
-    /// Adds base parameters on the joint axes that were estimated, with their covariance.
-    /// Directions without information (an infinite variance) may be left out by giving the
-    /// square root R of the information instead: see [`Knowledge::add_information`].
-    pub fn add_estimate(
-        &mut self,
-        model: &RegressionModel,
-        phi: &[f64],
-        covariance: &DMatrix<f64>,
-    ) -> bool {
-        // C = L L^T: L^-1 (phi - estimate) has unit covariance
-        let Some(factor) = covariance.clone().cholesky() else { return false };
-        let identity = DMatrix::identity(phi.len(), phi.len());
-        let Some(root) = factor.l().solve_lower_triangular(&identity) else { return false };
-        self.add_information(model, phi, &root);
-        true
-    }
-
-    /// Adds what a regression knows: R of W = Q R with rows of unit noise, at its estimate.
+    /// Adds rows of unit error.
     ///
     /// # Panics
-    /// If `phi` or `root` are not of the model.
-    pub fn add_information(&mut self, model: &RegressionModel, phi: &[f64], root: &DMatrix<f64>) {
-        let members = members(model);
-        assert_eq!(root.ncols(), members.nrows(), "one column for each base parameter");
-        let rows = root * members;
-        let values = root * DVector::from_column_slice(phi);
+    /// If they are of another number of unknowns, or not one for each value.
+    pub fn add_rows(&mut self, rows: &DMatrix<f64>, values: &DVector<f64>) {
         let at = self.rows.nrows();
         self.rows.resize_vertically_mut(at + rows.nrows(), 0.0);
-        self.rows.rows_mut(at, rows.nrows()).copy_from(&rows);
+        self.rows.rows_mut(at, rows.nrows()).copy_from(rows);
         self.values.resize_vertically_mut(at + values.len(), 0.0);
-        self.values.rows_mut(at, values.len()).copy_from(&values);
-    }
-
-    /// Adds all equations of another source.
-    ///
-    /// # Panics
-    /// If it is about another number of parameters.
-    pub fn join(&mut self, other: &Self) {
-        assert_eq!(self.parameters(), other.parameters(), "knowledge of the same parameters");
-        let at = self.rows.nrows();
-        self.rows.resize_vertically_mut(at + other.equations(), 0.0);
-        self.rows.rows_mut(at, other.equations()).copy_from(&other.rows);
-        self.values.resize_vertically_mut(at + other.equations(), 0.0);
-        self.values.rows_mut(at, other.equations()).copy_from(&other.values);
+        self.values.rows_mut(at, rows.nrows()).copy_from(values);
     }
 
     /// What follows.
     pub fn consequences(&self) -> Consequences {
-        let count = self.parameters();
-        // kilograms and kilogram square metres differ by orders: columns of one size decide ranks
+        let count = self.rows.ncols();
+        // units of unknowns differ by orders: columns of one size decide ranks
         let scales: Vec<f64> = self
             .rows
             .column_iter()
             .map(|column| column.norm())
             .map(|length| if length > 0.0 { 1.0 / length } else { 1.0 })
             .collect();
-        let scaled = DMatrix::from_fn(self.equations(), count, |row, column| {
+        let scaled = DMatrix::from_fn(self.count(), count, |row, column| {
             self.rows[(row, column)] * scales[column]
         });
         let nothing = Consequences {
@@ -164,7 +127,7 @@ impl Knowledge {
         let kept: Vec<usize> = (0..svd.singular_values.len())
             .filter(|&at| svd.singular_values[at] > RANK_TOLERANCE * largest)
             .collect();
-        // in the row space: theta0 = scales * sum of v_i (u_i . b) / s_i
+        // in the row space: x = scales * sum of v_i (u_i . b) / s_i
         let space = Space { kept, u, v_t, sizes: &svd.singular_values, scales: &scales };
         let residual = space.residual(&self.values);
         let parameters = (0..count).map(|at| space.determined(&[(at, 1.0)], &self.values));
@@ -177,20 +140,9 @@ impl Knowledge {
             parameters: parameters.collect(),
             combinations: combinations.collect(),
             chi_squared: residual,
-            degrees_of_freedom: self.equations() - space.kept.len(),
+            degrees_of_freedom: self.count() - space.kept.len(),
         }
     }
-}
-
-/// phi = M theta0.
-fn members(model: &RegressionModel) -> DMatrix<f64> {
-    let mut members = DMatrix::zeros(model.rank(), model.standard.len());
-    for (row, parameter) in model.axes.iter().enumerate() {
-        for &(column, factor) in &parameter.members {
-            members[(row, column)] += factor;
-        }
-    }
-    members
 }
 
 /// The row space of scaled equations.
@@ -226,8 +178,8 @@ impl Space<'_> {
         Some((value, variance.sqrt()))
     }
 
-    /// The row space in reduced echelon form: each combination has a parameter, with factor 1,
-    /// that no other has. Rows are in the order of these parameters.
+    /// The row space in reduced echelon form: each combination has an unknown, with factor 1,
+    /// that no other has. Rows are in the order of these unknowns.
     fn reduced(&self) -> Vec<Vec<(usize, f64)>> {
         let count = self.scales.len();
         let mut rows: Vec<Vec<f64>> = self
@@ -235,13 +187,13 @@ impl Space<'_> {
             .iter()
             .map(|&at| (0..count).map(|p| self.v_t[(at, p)] / self.scales[p]).collect())
             .collect();
-        // of each parameter in turn the largest entry left, in the measure of its column
+        // of each unknown in turn the largest entry left, in the measure of its column
         let mut done = 0;
-        for parameter in 0..count {
+        for unknown in 0..count {
             if done == rows.len() {
                 break;
             }
-            let size = |row: &Vec<f64>| row[parameter].abs() * self.scales[parameter];
+            let size = |row: &Vec<f64>| row[unknown].abs() * self.scales[unknown];
             let (pivot, largest) = (done..rows.len())
                 .map(|row| (row, size(&rows[row])))
                 .fold((done, 0.0), |best, next| if next.1 > best.1 { next } else { best });
@@ -249,12 +201,12 @@ impl Space<'_> {
                 continue;
             }
             rows.swap(done, pivot);
-            let factor = rows[done][parameter];
+            let factor = rows[done][unknown];
             rows[done].iter_mut().for_each(|entry| *entry /= factor);
             let own = rows[done].clone();
             for (at, row) in rows.iter_mut().enumerate().filter(|(at, _)| *at != done) {
                 debug_assert_ne!(at, done);
-                let factor = row[parameter];
+                let factor = row[unknown];
                 row.iter_mut().zip(&own).for_each(|(entry, own)| *entry -= factor * own);
             }
             done += 1;

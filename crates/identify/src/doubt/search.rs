@@ -1,8 +1,7 @@
 //! The search for the reading of columns that explains logs best.
 
-use super::super::policy;
-use super::line::Line;
 use super::misreading::Misreading;
+use super::policy;
 use super::reading::{Reading, hypotheses};
 use super::sample::Sample;
 use super::weigh::{Beliefs, Believed, Noise, Shares, Trust, together};
@@ -150,7 +149,7 @@ impl Search<'_> {
 
     /// Lines that begin at a reading: delays, unless something is late already, constants and
     /// gains. Noise of the positions makes parameters smaller, which gains and delays resemble.
-    fn lines(&self, reading: &Reading, is_noisy: bool) -> Vec<Line> {
+    fn lines(&self, reading: &Reading, is_noisy: bool) -> Vec<Misreading> {
         let joints = &self.sample.model.joints;
         let real = (0..joints.len()).map(JointIndex).filter(|joint| !joints[joint.0].is_base);
         let several = real.clone().count() > 1;
@@ -159,15 +158,17 @@ impl Search<'_> {
             real.clone().filter(|&joint| self.sample.moves(joint)).collect();
         let mut lines = Vec::new();
         if self.latest > 0 && !reading.is_shifted() && !is_noisy {
-            lines.push(Line::Late);
+            lines.push(Misreading::Late(0));
             let one_by_one = moving.iter().filter(|_| several);
-            lines.extend(one_by_one.clone().map(|&joint| Line::LatePosition(joint)));
-            lines.extend(one_by_one.copied().filter(measured).map(Line::LateTorque));
+            lines.extend(one_by_one.clone().map(|&joint| Misreading::LatePosition(joint, 0)));
+            let measured = one_by_one.copied().filter(measured);
+            lines.extend(measured.map(|joint| Misreading::LateTorque(joint, 0)));
         }
-        lines.extend(moving.iter().map(|&joint| Line::Zero(joint)));
-        lines.extend(real.clone().filter(measured).map(Line::Offset));
+        lines.extend(moving.iter().map(|&joint| Misreading::Zero(joint, 0.0)));
+        let offset = |joint| Misreading::TorqueOffset(joint, 0.0);
+        lines.extend(real.clone().filter(measured).map(offset));
         let gains = real.filter(measured).filter(|_| several && !is_noisy);
-        lines.extend(gains.map(Line::Gain));
+        lines.extend(gains.map(|joint| Misreading::TorqueGain(joint, 1.0)));
         lines
     }
 
@@ -204,7 +205,7 @@ impl Search<'_> {
         &mut self,
         reading: &Reading,
         straight: &Weighed,
-        line: Line,
+        line: Misreading,
         deviation: f64,
         trust: Trust,
         from: &Believed,
@@ -213,7 +214,7 @@ impl Search<'_> {
         let (mut size, mut std) = (0.0, deviation);
         let model = self.sample.model;
         for _ in 0..policy::LINEARISED {
-            let here = reading.with(line.at(size), &model.joints);
+            let here = reading.with(line.of_size(size), &model.joints);
             let rows = self.sample.rows_along(&here, &[line], &phi);
             let noise = here.by_joint(&straight.noise);
             let beside = Some((0, deviation));
@@ -229,7 +230,7 @@ impl Search<'_> {
                 break;
             }
         }
-        let misreading = line.at(size);
+        let misreading = line.of_size(size);
         let other = reading.with(misreading, &model.joints);
         if other == *reading {
             return None;

@@ -1,11 +1,12 @@
 //! The rows of some samples of logs under a reading of their columns.
 
-use super::line::Line;
+use super::misreading::Misreading;
 use super::reading::Reading;
 use super::window::{Window, with_sign};
 use crate::estimate::{Coulomb, coulomb};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, SampleIndex};
+use denavit_numerics::time_alike;
 use denavit_plants::regression::{RegressionEvaluator, RegressionModel, RegressionRows};
 use nalgebra::{DMatrix, DVector};
 
@@ -211,7 +212,7 @@ impl<'a> Sample<'a> {
     pub(super) fn rows_along(
         &mut self,
         reading: &Reading,
-        lines: &[Line],
+        lines: &[Misreading],
         phi: &DVector<f64>,
     ) -> Vec<Option<JointRows>> {
         let n = self.model.joints.len();
@@ -221,7 +222,7 @@ impl<'a> Sample<'a> {
             for line in lines {
                 let step = line.step();
                 let [above, below] = [step, -step].map(|by| {
-                    let other = reading.with(line.at(by), &self.model.joints);
+                    let other = reading.with(line.of_size(by), &self.model.joints);
                     self.read(window, &other);
                     (0..n)
                         .map(|joint| self.left(window, &other, JointIndex(joint), phi))
@@ -231,7 +232,7 @@ impl<'a> Sample<'a> {
                     let slope = |(above, below): (f64, f64)| (below - above) / (2.0 * step);
                     own.push(above.into_iter().zip(below).map(slope).collect::<Vec<f64>>());
                 }
-                if let Line::Gain(joint) = *line {
+                if let Misreading::TorqueGain(joint, _) = *line {
                     // of the torque that phi makes: the measured one times 0 would explain all
                     self.read(window, reading);
                     let measured = self.windows[window].torque(&reading.torques[joint.0]);
@@ -313,39 +314,5 @@ impl<'a> Sample<'a> {
         measured
             .map(|joint| by_filter.min(rows[joint] / time_alike(&alike[joint])).max(1.0))
             .collect()
-    }
-}
-
-/// The samples over which a signal is like itself, from the sums of its products with itself so
-/// many samples later: those of the initial positive sequence (Geyer 1992).
-fn time_alike(alike: &[f64]) -> f64 {
-    if alike[0] <= 0.0 {
-        return 1.0;
-    }
-    let pairs = alike[1..].chunks_exact(2).map(|pair| (pair[0] + pair[1]) / alike[0]);
-    1.0 + 2.0 * pairs.take_while(|pair| *pair > 0.0).sum::<f64>()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::time_alike;
-    use denavit_numerics::Random;
-
-    /// An autoregressive signal of the first order with factor 0.8 is like itself over
-    /// (1 + 0.8) / (1 - 0.8) = 9 samples.
-    #[test]
-    fn signals_are_like_themselves_as_long_as_theory_says() {
-        let mut random = Random::new(3);
-        let mut last = 0.0;
-        let signal: Vec<f64> = (0..200_000)
-            .map(|_| {
-                last = 0.8 * last + random.normal();
-                last
-            })
-            .collect();
-        let of_lag = |lag: usize| signal.iter().zip(&signal[lag..]).map(|(a, b)| a * b).sum();
-        let alike: Vec<f64> = (0..256).map(of_lag).collect();
-        let time = time_alike(&alike);
-        assert!((time - 9.0).abs() < 0.7, "{time}");
     }
 }

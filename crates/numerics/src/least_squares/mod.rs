@@ -1,9 +1,19 @@
 //! Least squares of condensed rows, and which directions of phi they say nothing about.
 
-use super::triangle::{Triangle, upper};
-pub(crate) use crate::policy::solve::DEAD;
-use crate::policy::solve::MOST_WEIGHT;
+mod triangle;
+
+pub use triangle::Triangle;
+
 use nalgebra::{DMatrix, DVector, SVD};
+use triangle::upper;
+
+/// A direction is not excited if its singular value, of columns scaled to length 1, is below this
+/// share of the largest.
+pub const DEAD: f64 = 1e-9;
+
+/// Rows count no more than this, so that squares of what is weighted are numbers: targets of 1e-160
+/// have other squares than they can have.
+const MOST_WEIGHT: f64 = 1e100;
 
 /// What is known of phi from elsewhere: a sum of entries, what it is, and how surely.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,26 +54,27 @@ impl Solution {
     }
 }
 
-/// The square system of weighted triangles, for each log those of its joints and their weights, and
-/// of what is known beforehand: R of [W | y].
+/// The square system of weighted triangles, in groups with their weights, and of what is known
+/// beforehand: R of [W | y]. Columns of the n-th triangle of each group are those of the places of
+/// phi that `pattern` has at n.
 pub fn stacked(
-    logs: &[(&[Triangle], &[f64])],
+    groups: &[(&[Triangle], &[f64])],
     pattern: &[Vec<usize>],
     prior: &[PriorRow],
     rank: usize,
 ) -> DMatrix<f64> {
-    let all = logs.iter().flat_map(|(of_log, weights)| of_log.iter().zip(*weights).enumerate());
+    let all = groups.iter().flat_map(|(own, weights)| own.iter().zip(*weights).enumerate());
     let used: Vec<(usize, (&Triangle, &f64))> =
         all.filter(|(_, (one, weight))| one.rows() > 0 && **weight > 0.0).collect();
     let height: usize = used.iter().map(|(_, (one, _))| one.width() + 1).sum();
     let height = (height + prior.len()).max(rank + 1);
     let mut stacked = DMatrix::zeros(height, rank + 1);
     let mut row = 0;
-    for (joint, (triangle, weight)) in used {
+    for (own_pattern, (triangle, weight)) in used {
         let r = triangle.matrix();
         for own in 0..r.nrows() {
             for place in own..r.ncols() {
-                let target = pattern[joint].get(place).copied().unwrap_or(rank);
+                let target = pattern[own_pattern].get(place).copied().unwrap_or(rank);
                 stacked[(row, target)] = weight.min(MOST_WEIGHT) * r[(own, place)];
             }
             row += 1;
@@ -147,7 +158,7 @@ pub fn solve(r: &DMatrix<f64>, start: &[f64]) -> Solution {
 mod tests {
     use super::*;
 
-    /// Torques whose squares are 0, and rows that are no numbers, end a search that would go on.
+    /// Targets whose squares are 0, and rows that are no numbers, end a search that would go on.
     #[test]
     fn rows_beyond_numbers_say_nothing() {
         let mut triangle = Triangle::new(2);

@@ -1,8 +1,8 @@
 //! Files of what was measured at rest (`"denavit-statics/1"`): weighings and held postures.
 
-use super::statics::{HoldingTorque, StaticMeasurement};
 use denavit_codegen::expr::text::nearest;
 use denavit_codegen::model::{Fields, Node, read_document};
+use denavit_identify::statics::{HoldingTorque, StaticMeasurement};
 use denavit_plants::regression::RegressionModel;
 use denavit_simulate::scenario::{
     Cause, FieldsNumbers, NodeNumbers, Range, Report, ScenarioError, check_format,
@@ -21,7 +21,7 @@ const POSITION: Range = Range { least: -1e9, most: 1e9 };
 
 /// Reads a file of measurements at rest: weighings first, then postures. `file` is its name, for
 /// messages alone.
-pub fn read_statics(
+pub(super) fn read_statics(
     file: &str,
     source: &[u8],
     model: &RegressionModel,

@@ -1,5 +1,6 @@
 //! The ways in which columns can be other ones than they are taken for, and how each is said.
 
+use super::policy;
 use super::reading::{OF_ANGLES, Signal};
 use denavit_measure::JointIndex;
 use denavit_measure::log::ColumnMapping;
@@ -66,14 +67,37 @@ impl Misreading {
 
     /// Whether another is the same mistake, but for how large it is.
     pub(crate) fn is_like(self, other: Self) -> bool {
-        match (self, other) {
-            (Self::Zero(one, _), Self::Zero(other, _))
-            | (Self::TorqueOffset(one, _), Self::TorqueOffset(other, _))
-            | (Self::TorqueGain(one, _), Self::TorqueGain(other, _))
-            | (Self::LateTorque(one, _), Self::LateTorque(other, _))
-            | (Self::LatePosition(one, _), Self::LatePosition(other, _)) => one == other,
-            (Self::Late(_), Self::Late(_)) => true,
-            _ => self == other,
+        self.of_size(0.0) == other.of_size(0.0)
+    }
+
+    /// Of those that differ by a number the one of a size: samples, rad or m, N m or N, and the
+    /// logarithm of a factor; others as they are.
+    pub(super) fn of_size(self, size: f64) -> Self {
+        let samples = size.round() as isize;
+        match self {
+            Self::Late(_) => Self::Late(samples),
+            Self::LateTorque(joint, _) => Self::LateTorque(joint, samples),
+            Self::LatePosition(joint, _) => Self::LatePosition(joint, samples),
+            Self::Zero(joint, _) => Self::Zero(joint, size),
+            Self::TorqueOffset(joint, _) => Self::TorqueOffset(joint, size),
+            Self::TorqueGain(joint, _) => Self::TorqueGain(joint, size.exp()),
+            other => other,
+        }
+    }
+
+    /// Half the difference of sizes that a slope is found with.
+    pub(super) fn step(self) -> f64 {
+        if self.is_late() { 1.0 } else { policy::SLOPE_STEP }
+    }
+
+    /// What is believed of its size: a deviation, where signals have samples of so many seconds and
+    /// joints torques of some size.
+    pub(super) fn deviation(self, step_s: f64, torque: &[f64]) -> f64 {
+        match self {
+            _ if self.is_late() => policy::LATE_S / step_s,
+            Self::TorqueOffset(joint, _) => policy::OFFSET * torque[joint.0],
+            Self::TorqueGain(..) => policy::GAIN,
+            _ => policy::ZERO,
         }
     }
 

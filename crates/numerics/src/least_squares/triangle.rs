@@ -1,8 +1,8 @@
 //! Rows of a least-squares problem, condensed to a triangle as they come: R of [W | y] = Q R.
 //!
 //! A triangle says everything about its rows that a linear estimate asks, since
-//! R^T R = [W | y]^T [W | y], without the squares ever being formed. Triangles of parts of a log
-//! make the triangle of the whole.
+//! R^T R = [W | y]^T [W | y], without the squares ever being formed. Triangles of parts make the
+//! triangle of the whole.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -25,7 +25,7 @@ impl Triangle {
 
     /// From the columns of R from the top to the diagonal, sums of the columns of its rows, and
     /// their number.
-    pub(super) fn of_entries(entries: &[f64], sums: Vec<f64>, rows: usize) -> Self {
+    pub fn of_entries(entries: &[f64], sums: Vec<f64>, rows: usize) -> Self {
         let size = sums.len();
         let mut entries = entries.iter();
         let mut r = DMatrix::zeros(size, size);
@@ -39,7 +39,7 @@ impl Triangle {
     }
 
     /// Sums of the columns of W, and of y.
-    pub(super) fn sums(&self) -> &DVector<f64> {
+    pub fn sums(&self) -> &DVector<f64> {
         &self.sums
     }
 
@@ -88,13 +88,6 @@ impl Triangle {
         self.rows += other.rows;
     }
 
-    /// Turns y round.
-    pub fn negate_target(&mut self) {
-        let last = self.width();
-        self.r.column_mut(last).neg_mut();
-        self.sums[last] = -self.sums[last];
-    }
-
     /// |W phi - y|^2.
     pub fn squares(&self, phi: &[f64]) -> f64 {
         let residual = self.residual(phi);
@@ -102,7 +95,7 @@ impl Triangle {
     }
 
     /// The sum of y - W phi.
-    pub(super) fn sum(&self, phi: &[f64]) -> f64 {
+    pub fn sum(&self, phi: &[f64]) -> f64 {
         let fitted: f64 = self.sums.iter().zip(phi).map(|(sum, phi)| sum * phi).sum();
         self.sums[self.width()] - fitted
     }
@@ -143,7 +136,7 @@ mod tests {
     #[test]
     fn parts_make_the_whole_and_squares_are_those_of_the_rows() {
         let column = |seed: u64| {
-            let mut random = denavit_numerics::Random::new(seed);
+            let mut random = crate::Random::new(seed);
             (0..90).map(|_| random.normal()).collect::<Vec<f64>>()
         };
         let columns: Vec<Vec<f64>> = (1..=4).map(column).collect();

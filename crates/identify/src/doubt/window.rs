@@ -1,6 +1,6 @@
 //! Samples of a log under a reading of its columns.
 
-use super::super::policy::SIGNED as LEAST;
+use super::policy::SIGNED as LEAST;
 use super::reading::Source;
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, SampleIndex};

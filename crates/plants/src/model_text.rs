@@ -1,116 +1,14 @@
 //! New values in the text of a model file, which else stays as it is.
 
+use crate::regression::ModelParameter;
+use denavit_codegen::model::json::{Json, Value, parse};
 use denavit_codegen::model::{BodyEntry, Role};
-use denavit_plants::regression::ModelParameter;
 use std::fmt::Write;
 use std::ops::Range;
 
-/// A value of JSON with its place in the text.
-struct Node {
-    span: Range<usize>,
-    kind: Kind,
-}
-
-enum Kind {
-    Object(Vec<(String, Node)>),
-    Array(Vec<Node>),
-    Text(String),
-    Other,
-}
-
-impl Node {
-    fn get(&self, key: &str) -> Option<&Self> {
-        match &self.kind {
-            Kind::Object(entries) => entries.iter().find(|(own, _)| own == key).map(|(_, v)| v),
-            _ => None,
-        }
-    }
-
-    /// Where another entry of an object goes: after its last one, or after its bracket.
-    fn end(&self) -> usize {
-        match &self.kind {
-            Kind::Object(entries) => {
-                entries.last().map_or(self.span.start + 1, |(_, last)| last.span.end)
-            }
-            _ => self.span.start + 1,
-        }
-    }
-
-    fn items(&self) -> &[Self] {
-        if let Kind::Array(items) = &self.kind { items } else { &[] }
-    }
-}
-
-/// Reads sound JSON: the model was read from it before.
-struct Scanner<'a> {
-    text: &'a [u8],
-    at: usize,
-}
-
-impl Scanner<'_> {
-    fn blank(&mut self) {
-        while self.text.get(self.at).is_some_and(u8::is_ascii_whitespace) {
-            self.at += 1;
-        }
-    }
-
-    fn next_is(&mut self, byte: u8) -> bool {
-        self.blank();
-        let is = self.text.get(self.at) == Some(&byte);
-        self.at += usize::from(is);
-        is
-    }
-
-    fn string(&mut self) -> Option<String> {
-        let start = self.at;
-        if !self.next_is(b'"') {
-            return None;
-        }
-        while *self.text.get(self.at)? != b'"' {
-            self.at += if self.text[self.at] == b'\\' { 2 } else { 1 };
-        }
-        self.at += 1;
-        serde_json::from_slice(&self.text[start..self.at]).ok()
-    }
-
-    fn value(&mut self) -> Option<Node> {
-        self.blank();
-        let start = self.at;
-        let kind = match self.text.get(self.at)? {
-            b'{' => {
-                self.at += 1;
-                let mut entries = Vec::new();
-                while !self.next_is(b'}') {
-                    self.next_is(b',');
-                    self.blank();
-                    let key = self.string()?;
-                    if !self.next_is(b':') {
-                        return None;
-                    }
-                    entries.push((key, self.value()?));
-                }
-                Kind::Object(entries)
-            }
-            b'[' => {
-                self.at += 1;
-                let mut items = Vec::new();
-                while !self.next_is(b']') {
-                    self.next_is(b',');
-                    items.push(self.value()?);
-                }
-                Kind::Array(items)
-            }
-            b'"' => Kind::Text(self.string()?),
-            _ => {
-                let is_end = |byte: &u8| byte.is_ascii_whitespace() || b",]}".contains(byte);
-                while self.text.get(self.at).is_some_and(|byte| !is_end(byte)) {
-                    self.at += 1;
-                }
-                Kind::Other
-            }
-        };
-        Some(Node { span: start..self.at, kind })
-    }
+/// Where another entry of an object goes: after its last one, or after its bracket.
+fn end(object: &Json<'_>) -> usize {
+    object.entries().last().map_or(object.start + 1, |(_, last)| last.end)
 }
 
 /// A parameter with its new value, and its standard error if it is known by itself.
@@ -125,8 +23,8 @@ pub struct NewValue<'a> {
 }
 
 /// The text with new values; none if it is not the JSON of a model.
-pub fn updated(text: &str, values: &[NewValue<'_>]) -> Option<String> {
-    let root = Scanner { text: text.as_bytes(), at: 0 }.value()?;
+pub fn with_values(text: &str, values: &[NewValue<'_>]) -> Option<String> {
+    let root = parse(text.as_bytes()).ok()?;
     let mut edits: Vec<(Range<usize>, String)> = Vec::new();
     let mut inserted: Vec<(usize, String, String)> = Vec::new();
     for new in values {
@@ -185,24 +83,24 @@ pub fn with_effects(
     effects: &[NewEffect<'_>],
     changed: &[(usize, EffectValues<'_>)],
 ) -> Option<String> {
-    let root = Scanner { text: text.as_bytes(), at: 0 }.value()?;
+    let root = parse(text.as_bytes()).ok()?;
     let mut edits: Vec<(Range<usize>, String)> = Vec::new();
     for (number, values) in changed {
         let own = root.get("effects")?.items().get(*number)?;
         let values = values_text(values);
         edits.push(match own.get("parameters") {
-            Some(known) => (known.span.clone(), values),
-            None => (own.end()..own.end(), format!(", \"parameters\": {values}")),
+            Some(known) => (known.start..known.end, values),
+            None => (end(own)..end(own), format!(", \"parameters\": {values}")),
         });
     }
     let lines: Vec<String> = effects.iter().map(effect_text).collect();
     let (at, inserted) = match root.get("effects") {
         Some(known) => match known.items().last() {
-            Some(last) => (last.span.end, format!(", {}", lines.join(", "))),
-            None => (known.span.start + 1, lines.join(", ")),
+            Some(last) => (last.end, format!(", {}", lines.join(", "))),
+            None => (known.start + 1, lines.join(", ")),
         },
         None => {
-            let blanks = indent(text.get(..root.end())?);
+            let blanks = indent(text.get(..end(&root))?);
             let list = match blanks {
                 Some(blanks) => {
                     let line = format!(",\n{blanks}{blanks}");
@@ -211,7 +109,7 @@ pub fn with_effects(
                 None => format!("[{}]", lines.join(", ")),
             };
             let separator = blanks.map_or(", ".to_owned(), |blanks| format!(",\n{blanks}"));
-            (root.end(), format!("{separator}\"effects\": {list}"))
+            (end(&root), format!("{separator}\"effects\": {list}"))
         }
     };
     if !lines.is_empty() {
@@ -280,14 +178,14 @@ enum Place {
     In(usize, String),
 }
 
-fn in_object(object: &Node, key: &str) -> Place {
+fn in_object(object: &Json<'_>, key: &str) -> Place {
     match object.get(key) {
-        Some(node) => Place::Value(node.span.clone()),
-        None => Place::In(object.end(), key.to_owned()),
+        Some(node) => Place::Value(node.start..node.end),
+        None => Place::In(end(object), key.to_owned()),
     }
 }
 
-fn place(root: &Node, parameter: &ModelParameter) -> Option<Place> {
+fn place(root: &Json<'_>, parameter: &ModelParameter) -> Option<Place> {
     let link = parameter.link.as_deref();
     match parameter.role {
         Some(Role::Unknown | Role::Constant) => {
@@ -295,9 +193,9 @@ fn place(root: &Node, parameter: &ModelParameter) -> Option<Place> {
             let own = group.or_else(|| root.get("constants"))?.get(&parameter.name)?;
             let std = Box::new(in_object(own, "std"));
             Some(match own.get("value") {
-                Some(value) => Place::Parts(value.span.clone(), std),
-                None if matches!(own.kind, Kind::Object(_)) => in_object(own, "value"),
-                None => Place::Value(own.span.clone()),
+                Some(value) => Place::Parts(value.start..value.end, std),
+                None if matches!(own.value, Value::Object(_)) => in_object(own, "value"),
+                None => Place::Value(own.start..own.end),
             })
         }
         Some(Role::Body(_, entry)) => body_entry(body(root, link?)?, entry),
@@ -310,26 +208,26 @@ fn place(root: &Node, parameter: &ModelParameter) -> Option<Place> {
             let joint = link_of(root, link?).and_then(|link| link.get("joint"));
             let damping = joint.and_then(|joint| joint.get("damping"));
             match damping.filter(|_| key == "viscous") {
-                Some(damping) => Some(Place::Value(damping.span.clone())),
+                Some(damping) => Some(Place::Value(damping.start..damping.end)),
                 None => Some(in_object(drive?, key)),
             }
         }
     }
 }
 
-fn link_of<'a>(root: &'a Node, name: &str) -> Option<&'a Node> {
-    let is_named = |link: &&Node| {
-        let own = link.get("name").map(|name| &name.kind);
-        matches!(own, Some(Kind::Text(own)) if own == name)
+fn link_of<'a>(root: &'a Json<'a>, name: &str) -> Option<&'a Json<'a>> {
+    let is_named = |link: &&Json<'_>| {
+        let own = link.get("name").map(|name| &name.value);
+        matches!(own, Some(Value::Text(own)) if own == name)
     };
     root.get("links")?.items().iter().find(is_named)
 }
 
-fn body<'a>(root: &'a Node, link: &str) -> Option<&'a Node> {
+fn body<'a>(root: &'a Json<'a>, link: &str) -> Option<&'a Json<'a>> {
     link_of(root, link).and_then(|link| link.get("body")).or_else(|| root.get("base")?.get("body"))
 }
 
-fn body_entry(body: &Node, entry: BodyEntry) -> Option<Place> {
+fn body_entry(body: &Json<'_>, entry: BodyEntry) -> Option<Place> {
     use BodyEntry::{ComX, ComY, ComZ, Mass};
     let axis = match entry {
         Mass => return Some(in_object(body, "mass")),
@@ -340,13 +238,13 @@ fn body_entry(body: &Node, entry: BodyEntry) -> Option<Place> {
             let key = &entry.prefix()[1..];
             return match body.get("inertia") {
                 Some(inertia) => Some(in_object(inertia, key)),
-                None => Some(Place::In(body.end(), format!("inertia.{key}"))),
+                None => Some(Place::In(end(body), format!("inertia.{key}"))),
             };
         }
     };
     match body.get("com") {
-        Some(com) => com.items().get(axis).map(|node| Place::Value(node.span.clone())),
-        None => Some(Place::In(body.end(), format!("com.{axis}"))),
+        Some(com) => com.items().get(axis).map(|node| Place::Value(node.start..node.end)),
+        None => Some(Place::In(end(body), format!("com.{axis}"))),
     }
 }
 
@@ -363,7 +261,7 @@ fn drive_key(parameter: &ModelParameter) -> Option<&'static str> {
 
 /// A joint parameter of a joint without a drive of its own.
 fn missing_joint(
-    root: &Node,
+    root: &Json<'_>,
     parameter: &ModelParameter,
     written: String,
     inserted: &mut Vec<(usize, String, String)>,
@@ -371,8 +269,8 @@ fn missing_joint(
     let link = parameter.link.as_deref()?;
     let key = drive_key(parameter)?;
     let (at, prefix) = match root.get("drives") {
-        Some(drives) => (drives.end(), String::new()),
-        None => (root.end(), "drives.".to_owned()),
+        Some(drives) => (end(drives), String::new()),
+        None => (end(root), "drives.".to_owned()),
     };
     inserted.push((at, format!("{prefix}{link}.{key}"), written));
     Some(())

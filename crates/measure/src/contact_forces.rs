@@ -4,9 +4,9 @@
 //! D qdd + C qd + G = tau + W lambda: the right side is what is regressed. The virtual joints of a
 //! floating base have no torque of their own, so their rows are the wrench that contacts put on it.
 
+use crate::log::{LogRemark, MeasuredLog};
 use crate::policy::contact_forces::DIFFERENCE;
 use denavit_codegen::model::Robot;
-use denavit_measure::log::{LogRemark, MeasuredLog};
 use denavit_plants::regression::RegressionModel;
 use denavit_plants::{Plant, plant_of};
 

@@ -1,0 +1,177 @@
+//! Why nothing is identified.
+
+use denavit_codegen::model::ModelError;
+use std::fmt;
+
+/// Why there is no answer. It is printed with what helps, where something does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Error(Box<Reason>);
+
+/// What kind of reason it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// Logs lack a column that is needed; [`Error::column`] has it.
+    MissingColumn,
+    /// Logs are too short, or nothing is left of them.
+    TooShort,
+    /// A log cannot be conditioned; the source says why.
+    Condition,
+    /// The motion does not tell parameters apart.
+    NotExcited,
+    /// Measurements contradict the model: another unit, perhaps. [`Error::scale`] mends a column.
+    Contradicting,
+    /// Measurements at rest are wrong; [`Error::faults`] has them one by one.
+    Measurements,
+    /// Robot and logs are right, and do not suit what is asked.
+    Unsuitable,
+    /// An iteration does not settle.
+    NotSettled,
+    /// A simulation does not begin.
+    NotStarted,
+    /// A simulation broke off.
+    BrokeOff,
+    /// Values make no model.
+    NoModel,
+    /// A text is no piece of a log of the model.
+    Piece,
+}
+
+/// What is wrong: all of it, or several faults.
+#[derive(Clone, Debug, PartialEq)]
+struct Reason {
+    kind: ErrorKind,
+    text: String,
+    column: Option<String>,
+    scale: Option<f64>,
+    measurement: Option<usize>,
+    source: Option<Source>,
+    faults: Vec<Error>,
+}
+
+/// Errors of others that are reasons.
+#[derive(Clone, Debug, PartialEq)]
+enum Source {
+    Condition(denavit_measure::Error),
+    Start(denavit_simulate::Error),
+    Model(ModelError),
+}
+
+impl Error {
+    /// A log lacks a column of this name.
+    pub fn missing_column(name: String) -> Self {
+        let text = format!("the log has no column `{name}`");
+        Self::new(ErrorKind::MissingColumn, text).of_column(name)
+    }
+
+    /// The file of a model, of this name, has no place for values.
+    pub fn no_place(model: &str) -> Self {
+        let text = format!("{model}: the identified values have no place in its file");
+        Self::new(ErrorKind::NoModel, text)
+    }
+
+    pub(crate) fn new(kind: ErrorKind, text: impl Into<String>) -> Self {
+        let (column, scale, measurement) = (None, None, None);
+        let (source, faults) = (None, Vec::new());
+        let text = text.into();
+        Self(Box::new(Reason { kind, text, column, scale, measurement, source, faults }))
+    }
+
+    /// A measurement at rest, of this number from 0, is wrong.
+    pub(crate) fn of_measurement(number: usize, text: impl fmt::Display) -> Self {
+        let text = format!("measurement {}: {text}", number + 1);
+        let mut one = Self::new(ErrorKind::Measurements, text);
+        one.0.measurement = Some(number);
+        one
+    }
+
+    /// The same with the column that it is about.
+    pub(crate) fn of_column(mut self, column: String) -> Self {
+        self.0.column = Some(column);
+        self
+    }
+
+    /// The same with what the column is to be multiplied with.
+    pub(crate) fn mended_by(mut self, scale: Option<f64>) -> Self {
+        self.0.scale = scale;
+        self
+    }
+
+    fn with_source(kind: ErrorKind, text: String, source: Source) -> Self {
+        let mut one = Self::new(kind, text);
+        one.0.source = Some(source);
+        one
+    }
+
+    /// What kind of reason it is.
+    pub fn kind(&self) -> ErrorKind {
+        self.0.kind
+    }
+
+    /// The column of a log that is missing, or that contradicts the model.
+    pub fn column(&self) -> Option<String> {
+        self.0.column.clone()
+    }
+
+    /// What that column is to be multiplied with, if a known mistake explains it.
+    pub fn scale(&self) -> Option<f64> {
+        self.0.scale
+    }
+
+    /// The number of the measurement at rest that is wrong, from 0.
+    pub fn measurement(&self) -> Option<usize> {
+        self.0.faults.first().map_or(self.0.measurement, Self::measurement)
+    }
+
+    /// All that is wrong, one by one.
+    pub fn faults(&self) -> Vec<Self> {
+        if self.0.faults.is_empty() { vec![self.clone()] } else { self.0.faults.clone() }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0.text)
+    }
+}
+
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        Some(match self.0.source.as_ref()? {
+            Source::Condition(error) => error,
+            Source::Start(error) => error,
+            Source::Model(error) => error,
+        })
+    }
+}
+
+/// All that is wrong with measurements at rest.
+impl From<Vec<Error>> for Error {
+    fn from(faults: Vec<Error>) -> Self {
+        let texts: Vec<&str> = faults.iter().map(|one| one.0.text.as_str()).collect();
+        let mut all = Self::new(ErrorKind::Measurements, texts.join("\n"));
+        all.0.faults = faults;
+        all
+    }
+}
+
+/// A log that cannot be conditioned.
+impl From<denavit_measure::Error> for Error {
+    fn from(error: denavit_measure::Error) -> Self {
+        Self::with_source(ErrorKind::Condition, error.to_string(), Source::Condition(error))
+    }
+}
+
+/// A simulation that does not begin.
+impl From<denavit_simulate::Error> for Error {
+    fn from(error: denavit_simulate::Error) -> Self {
+        Self::with_source(ErrorKind::NotStarted, error.to_string(), Source::Start(error))
+    }
+}
+
+/// A file with new values is not that of a model.
+impl From<ModelError> for Error {
+    fn from(error: ModelError) -> Self {
+        Self::with_source(ErrorKind::NoModel, error.to_string(), Source::Model(error))
+    }
+}

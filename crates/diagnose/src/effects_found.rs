@@ -62,6 +62,8 @@ pub struct FoundEffect {
     pub log_predicted: f64,
     /// By how much of itself it changes in the course of logs, where they show that it does.
     pub change_in_time: Option<f64>,
+    /// The joint or spring at which something without a name does what it is there for, if so.
+    pub stands_for: Option<String>,
     /// Whether it fits: else it is only the nearest of the catalogue to something without a name.
     pub is_named: bool,
     /// Effects that would do as well in its place.
@@ -118,6 +120,7 @@ pub(super) fn found_effects(
             share: (gap(&reopened) - gap(after)) / whole,
             log_predicted: predicted - setting.log_predicted(&judging, &reopened),
             change_in_time: search.change_in_time(all, place),
+            stands_for: None,
             is_named: true,
             parameters: values(setting, after, given + place, std),
             alternatives: alternatives(found, place),

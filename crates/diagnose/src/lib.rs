@@ -43,6 +43,7 @@ mod search;
 mod signals;
 mod simulated;
 mod spectra;
+mod stand_in;
 mod standstill;
 mod state;
 mod structure;

@@ -286,6 +286,11 @@ impl<'a> Search<'a> {
         Some((parts, gain))
     }
 
+    /// The log odds of an effect at its start, among all, before any log is looked at.
+    pub(super) fn log_prior(&self, part: &Part) -> f64 {
+        part.placed.log_share + log_occurrence(self.of(part)) - self.log_choices
+    }
+
     /// Effects together, weighed.
     pub(super) fn weighed(
         &self,
@@ -296,11 +301,7 @@ impl<'a> Search<'a> {
         let terms: Vec<&Terms> = parts.iter().map(|part| &part.terms).collect();
         let start = from.map(|from| from.weighed.variances.as_slice());
         let weighed = self.weighing.base.weigh(&terms, start, rounds);
-        let prior = |part: &Part| {
-            let candidate = &self.weighing.candidates[part.placed.candidate];
-            part.placed.log_share + log_occurrence(candidate) - self.log_choices
-        };
-        let of_parts: f64 = parts.iter().map(prior).sum();
+        let of_parts: f64 = parts.iter().map(|part| self.log_prior(part)).sum();
         let more = policy::ONE_MORE * parts.len().saturating_sub(1) as f64;
         Hypothesis { posterior: weighed.log_evidence + of_parts + more, parts, weighed }
     }

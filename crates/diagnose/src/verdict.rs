@@ -50,14 +50,10 @@ pub(super) fn judge(
 ) {
     // Of a model that is nothing like the logs, nothing has a name.
     let is_alike = left_open(diagnosis) <= policy::NOTHING_LIKE;
-    for one in &mut diagnosis.effects {
-        let left = left_beside(setting, &diagnosis.leftovers, one);
-        let is_law = |left: &Leftover| {
-            let at = setting.data.train.nominal.equation_name(left.equation);
-            is_unexplained(left, one.size) && diagnosis.structures.iter().any(|one| one.at == at)
-        };
-        let is_constant = one.change_in_time.is_none();
-        one.is_named = is_alike && is_constant && left.is_none_or(|left| !is_law(left));
+    let named: Vec<bool> =
+        diagnosis.effects.iter().map(|one| is_alike && is_law(diagnosis, setting, one)).collect();
+    for (one, is_named) in diagnosis.effects.iter_mut().zip(named) {
+        one.is_named = is_named;
     }
     let (verdict, mut reasons) = said(diagnosis, setting);
     reasons.extend(doubts(diagnosis, setting, found));
@@ -72,6 +68,22 @@ pub(super) fn judge(
         diagnosis.verdict = Verdict::CannotTell;
         diagnosis.reasons = misread.iter().map(ToString::to_string).collect();
     }
+}
+
+/// Whether an effect is a law, and not near to something else: it stands for nothing at another
+/// joint, no effect of its joint changes in time, and what is left beside it is little, or a
+/// disturbance without which held-out logs ask for it.
+fn is_law(diagnosis: &Diagnosis, setting: &Setting<'_>, one: &FoundEffect) -> bool {
+    let joint = |one: &FoundEffect| setting.candidates[one.candidate].joint;
+    let mut there = diagnosis.effects.iter().filter(|other| joint(other) == joint(one));
+    let changes = there.any(|other| other.change_in_time.is_some());
+    let left = left_beside(setting, &diagnosis.leftovers, one);
+    let is_disturbance = |left: &Leftover| {
+        let at = &diagnosis.places[left.equation];
+        diagnosis.structures.iter().all(|one| one.at != *at) && one.log_predicted > policy::NAMED
+    };
+    let stands = left.is_none_or(|left| !is_unexplained(left, one.size) || is_disturbance(left));
+    stands && !changes && one.stands_for.is_none()
 }
 
 fn is_unexplained(left: &Leftover, explained: f64) -> bool {
@@ -128,13 +140,14 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
              sensors have"
         ))
     };
-    if let Some(what) = slow.or_else(broad) {
-        let has_names = diagnosis.effects.iter().any(|one| one.is_named);
-        let verdict = if has_names { Verdict::PartlyExplained } else { Verdict::Unexplained };
-        return (verdict, vec![what]);
-    }
-    if diagnosis.effects.is_empty() {
+    let what = slow.or_else(broad);
+    if diagnosis.effects.is_empty() && what.is_none() {
         return nothing_found(diagnosis, setting);
+    }
+    let has = |named: bool| diagnosis.effects.iter().any(|one| one.is_named == named);
+    if what.is_some() || has(false) {
+        let verdict = if has(true) { Verdict::PartlyExplained } else { Verdict::Unexplained };
+        return (verdict, what.into_iter().collect());
     }
     let ambiguous: Vec<String> = diagnosis
         .effects
@@ -199,6 +212,13 @@ fn doubts(diagnosis: &Diagnosis, setting: &Setting<'_>, found: &Found) -> Vec<St
              its mean to either side, as the law does not",
             setting.candidates[one.candidate].name(),
             100.0 * change
+        ));
+    }
+    for one in &diagnosis.effects {
+        let Some(place) = &one.stands_for else { continue };
+        reasons.push(format!(
+            "{} stands for something at {place} that has no name: beside that nothing asks for it",
+            setting.candidates[one.candidate].name()
         ));
     }
     for &candidate in &found.dropped {

@@ -1,10 +1,10 @@
 //! Whether an effect is the same in the course of a log.
 //!
 //! A law of the catalogue holds at all times, and those that do not say how they change. Something
-//! else may be like one for a while: a force that fades is like a spring that becomes weak. Each log
-//! gives the effect a column more, what it does times a line in time, from -1 at the first row to 1
-//! at the last. If the data ask for these columns and make them large, the effect is only near to
-//! what is there. That is the test of Chow (1960) for constant parameters, as evidence.
+//! else may be like one for a while: a force that fades is like a spring that becomes weak. Each
+//! log gives the effect a column more, what it does times a line in time, from -1 at the first row
+//! to 1 at the last. If the data ask for these columns and make them large, the effect is only near
+//! to what is there. That is the test of Chow (1960) for constant parameters, as evidence.
 
 use super::data::RowResponse;
 use super::hypothesis::Hypothesis;

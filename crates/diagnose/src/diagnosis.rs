@@ -190,10 +190,7 @@ pub fn diagnose(
     }
     let states = [&before, &after];
     let leftovers = leftovers(&search.weighing.spectra, &found.after);
-    let stand_ins = search.stand_ins(&found.after, &leftovers);
-    for (one, joint) in effects.iter_mut().zip(stand_ins) {
-        one.stands_for = joint.map(|joint| nominal.equation_name(joint.0));
-    }
+    search.tell_stand_ins(&found.after, &leftovers, &mut effects);
     let unnamed = leftovers.iter().filter(|one| one.share > policy::LEFT);
     let mut diagnosis = Diagnosis {
         visible: visible(&search, &found.after),

@@ -1,12 +1,13 @@
 //! Effects that stand for something without a name at another joint.
 //!
-//! What acts at one joint and is in no catalogue moves numbers of the model that act there, too, and
-//! effects of other joints put right what these numbers spoil. So where more than noise is left at a
-//! joint, effects of the others are held against a function without a name: a polynomial of third
-//! degree of its position and velocity, which may change in time. What is not asked for beside that
-//! stands for it.
+//! What acts at one joint and is in no catalogue moves numbers of the model that act there, too,
+//! and effects of other joints put right what these numbers spoil. So where more than noise is left
+//! at a joint, effects of the others are held against a function without a name: a polynomial of
+//! third degree of its position and velocity, which may change in time. What is not asked for
+//! beside that stands for it.
 
 use super::data::{Data, RowResponse};
+use super::effects_found::FoundEffect;
 use super::hypothesis::Hypothesis;
 use super::leftover::Leftover;
 use super::search::Search;
@@ -16,14 +17,16 @@ use denavit_evidence::{Terms, policy};
 use denavit_measure::JointIndex;
 
 impl Search<'_> {
-    /// For each effect the joint at which a function without a name does what it is there for.
-    pub(super) fn stand_ins(
+    /// Says of each effect at which joint a function without a name does what it is there for, if
+    /// there is one.
+    pub(super) fn tell_stand_ins(
         &self,
         found: &Hypothesis,
         leftovers: &[Leftover],
-    ) -> Vec<Option<JointIndex>> {
-        let joints = self.weighing.sets[0].nominal.model.joints.len();
-        let mut stand_ins = vec![None; found.parts.len()];
+        effects: &mut [FoundEffect],
+    ) {
+        let nominal = self.weighing.sets[0].nominal;
+        let joints = nominal.model.joints.len();
         let is_left = |one: &&Leftover| one.share > policy::LEFT && one.equation < joints;
         for joint in leftovers.iter().filter(is_left).map(|one| JointIndex(one.equation)) {
             let unnamed = self.weighing.unnamed(joint);
@@ -42,11 +45,10 @@ impl Search<'_> {
                 let is_elsewhere = self.candidate(found, place).joint != Some(joint);
                 let odds = || all - evidence(Some(place)) + self.log_prior(part);
                 if is_elsewhere && odds() < policy::NAMED {
-                    stand_ins[place] = Some(joint);
+                    effects[place].stands_for = Some(nominal.equation_name(joint.0));
                 }
             }
         }
-        stand_ins
     }
 }
 

@@ -4,6 +4,7 @@
 use super::errors::assert_says;
 use super::{Directory, command, run_in};
 use std::fs;
+use std::io::Write;
 use std::os::unix::fs::symlink;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
@@ -11,25 +12,35 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// A signal to a process of ours.
-fn send(signal: &str, child: &Child) {
-    let status = Command::new("kill").args([signal, &child.id().to_string()]).status();
-    assert!(status.expect("kill runs").success());
+/// A shell that waits for a word before it sends a signal: on a busy machine a command that is
+/// started only then comes too late.
+fn ready(signal: &str, child: &Child) -> Child {
+    let mut shell = Command::new("sh");
+    shell.args(["-c", r#"read -r word && kill "$0" "$1""#, signal, &child.id().to_string()]);
+    shell.stdin(Stdio::piped()).spawn().expect("a shell starts")
+}
+
+/// Has a shell that is ready send its signal.
+fn send(mut shell: Child) {
+    shell.stdin.take().expect("a pipe").write_all(b"now\n").expect("the shell waits");
+    assert!(shell.wait().expect("it ends").success());
 }
 
 /// Sends a running command a signal as soon as something is there, and says how it ended; none if
 /// it ended before.
 fn ended_by(signal: &str, child: &mut Child, is_there: &dyn Fn() -> bool) -> Option<ExitStatus> {
-    let start = Instant::now();
+    let (start, mut shell) = (Instant::now(), ready(signal, child));
     while !is_there() {
         if let Some(status) = child.try_wait().expect("a status") {
             assert_eq!(status.code(), Some(0), "nothing but its end ends it");
+            drop(shell.stdin.take());
+            shell.wait().expect("it ends");
             return None;
         }
         assert!(start.elapsed() < Duration::from_secs(120), "nothing came");
         sleep(Duration::from_micros(200));
     }
-    send(signal, child);
+    send(shell);
     Some(child.wait().expect("it ends"))
 }
 

@@ -178,7 +178,7 @@ pub fn diagnose(
     let (after, mut effects) = loop {
         let after = setting.state(&found.after.parts, &z);
         let effects = found_effects(&setting, &search, &found, &before, &after);
-        let idle = effects.iter().position(|one| one.log_predicted < -policy::NAMED);
+        let idle = effects.iter().position(FoundEffect::is_idle);
         let Some(place) = idle else { break (after, effects) };
         search.drop(&mut found, place);
     };

@@ -55,6 +55,8 @@ pub struct FoundEffect {
     pub log_odds: f64,
     /// What it does at the joint where that is most, as a share of its torque.
     pub size: f64,
+    /// The same with the values of the logs for training.
+    pub(super) trained: f64,
     /// The share of what can be explained that is open again without it, on held-out logs.
     pub share: f64,
     /// By how much more likely held-out logs are with it, as those that were fitted have it: a log
@@ -76,6 +78,14 @@ pub struct FoundEffect {
     pub experiment: Option<Result<Experiment, Error>>,
     /// What it adds over what it depends on; none where it adds nothing to held-out logs.
     pub curve: Option<LawCurve>,
+}
+
+impl FoundEffect {
+    /// Whether logs that its values were not fitted to are less likely with it; or those that they
+    /// were fitted to ask for nothing of it, so that the others alone show it.
+    pub(super) fn is_idle(&self) -> bool {
+        self.log_predicted < -policy::NAMED || self.trained < policy::WORTH
+    }
 }
 
 /// An effect that the model has.
@@ -117,6 +127,7 @@ pub(super) fn found_effects(
             candidate: taken.candidate,
             log_odds: all.posterior - without.posterior,
             size: search.size(all, place),
+            trained: search.weighing.size(taken),
             share: (gap(&reopened) - gap(after)) / whole,
             log_predicted: predicted - setting.log_predicted(&judging, &reopened),
             change_in_time: search.change_in_time(all, place),

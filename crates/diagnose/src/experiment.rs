@@ -123,7 +123,11 @@ impl Ambiguity<'_> {
         let references = feasible.references(&x);
         let power =
             self.log_of(&references).and_then(|log| self.seen(log, |seen| seen.power(seed)));
-        let power = power.unwrap_or(0.0);
+        let power = power.filter(|power| *power > 0.0).ok_or_else(|| {
+            let why =
+                "no motion that was tried tells them apart: in none of the logs that it would";
+            Cause::NoExperiment(format!("{why} give did the odds reach 100 to 1"))
+        })?;
         let rivals: Vec<usize> = self.names[1..].iter().map(|one| one.candidate).collect();
         let before = self.seen(self.log.clone(), |seen| seen.least(seed));
         let separation_before = separation_of(before.unwrap_or(0.0));

@@ -61,7 +61,7 @@ impl Weighing<'_> {
             |of: &dyn Fn(&Signals) -> f64| all().map(of).fold(f64::MIN_POSITIVE, f64::max);
         let most = |values: &[f64]| values.iter().fold(0.0, |most: f64, one| most.max(one.abs()));
         let scale =
-            [largest(&|log| most(&log.q[joint.0])), largest(&|log| most(&log.of_drive(joint)[0]))];
+            [largest(&|log| most(&log.q[joint.0])), largest(&|log| most(log.of_drive(joint)[0]))];
         let of_set = |data: &&Data<'_>| {
             let mut response = RowResponse::default();
             for stretch in data.stretches.iter().filter(|one| one.equation == joint.0) {

@@ -186,16 +186,21 @@ impl Signals {
 
 /// Gives rates at times \[s\] of a drive that rests another sign at each sample, so that their mean
 /// is the side of its friction. As long before and after it the drive moves as it is seen to, which
-/// a filter blurs.
+/// a filter blurs; but not where it goes the other way by more than a step of its encoder in the
+/// time of the shortest rest.
 fn alternate(rates: &mut [f64], t: &[f64], rests: &[Rest]) {
     for rest in rests {
-        let Rest { time_s: Range { start, end }, directions, creep, .. } = rest;
+        let Rest { time_s: Range { start, end }, directions, creep, leaves_s, .. } = rest;
         let [came, leaves] = directions;
         let long = end - start;
-        for (from, to, direction) in [(start - long, *start, came), (*end, end + long, leaves)] {
-            let moves = rates[within(t, &(from..to))].iter_mut();
-            moves.for_each(|rate| *rate = direction * (direction * *rate).max(*creep));
-        }
+        let step_s = t.get(1).map_or(1.0, |second| second - t[0]);
+        let other_way = -creep * (end - leaves_s) / (LEAST as f64 * step_s);
+        let before = rates[within(t, &(start - long..*start))].iter_mut().rev();
+        let blurred = before.take_while(|rate| came * **rate >= other_way);
+        blurred.for_each(|rate| *rate = came * (came * *rate).max(*creep));
+        let after = rates[within(t, &(*end..end + long))].iter_mut();
+        let blurred = after.take_while(|rate| leaves * **rate >= other_way);
+        blurred.for_each(|rate| *rate = leaves * (leaves * *rate).max(*creep));
         let samples = rest.samples(t);
         let mut sum = 0.0;
         for (rate, t) in rates[samples.clone()].iter_mut().zip(&t[samples]) {
@@ -225,6 +230,24 @@ mod tests {
     /// It is slowed down until 0.3 s, rests until 0.4 s, and is moved back.
     fn back(t: f64) -> f64 {
         0.15 - (0.3 - t).max(0.0).powi(2) - 3.0 * (t - 0.4).max(0.0).powf(2.5)
+    }
+
+    /// It turns around at 1 s, stops at 2 s, and rests for 6 s: the filter blurs the last samples.
+    #[test]
+    fn a_long_rest_leaves_the_motion_before_it() {
+        let t: Vec<f64> = (0..4000).map(|k| 0.002 * f64::from(k)).collect();
+        let rate = |t: &f64| match t {
+            t if *t < 1.99 => (std::f64::consts::PI * t).sin(),
+            _ => 0.0,
+        };
+        let mut rates: Vec<f64> = t.iter().map(rate).collect();
+        let seen = rates.clone();
+        let (time_s, directions) = (2.0..8.0, [-1.0, 1.0]);
+        let rest = Rest { time_s, directions, sides: vec![0.0; 2], leaves_s: 8.0, creep: 1e-6 };
+        alternate(&mut rates, &t, &[rest]);
+        assert_eq!(rates[..995], seen[..995]);
+        assert!(rates[995..1000].iter().all(|rate| *rate == -1e-6));
+        assert!(rates[1000..].iter().all(|rate| rate.abs() == 1e-6));
     }
 
     #[test]

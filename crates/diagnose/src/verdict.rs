@@ -90,19 +90,20 @@ fn is_unexplained(left: &Leftover, explained: f64) -> bool {
     left.share > policy::LEFT && left.share > policy::LEFT_OF_EXPLAINED * explained
 }
 
+/// Whether an effect acts where something is left.
+fn acts_at(setting: &Setting<'_>, one: &FoundEffect, left: &Leftover) -> bool {
+    let candidate = &setting.candidates[one.candidate];
+    let joint = setting.data.train.nominal.joint_of(left.equation);
+    candidate.is_body || candidate.joint.is_none_or(|own| own == joint)
+}
+
 /// What is left most of where an effect acts.
 fn left_beside<'l>(
     setting: &Setting<'_>,
     leftovers: &'l [Leftover],
     one: &FoundEffect,
 ) -> Option<&'l Leftover> {
-    let candidate = &setting.candidates[one.candidate];
-    let nominal = setting.data.train.nominal;
-    let is_there = |left: &&Leftover| {
-        let joint = nominal.joint_of(left.equation);
-        candidate.is_body || candidate.joint.is_none_or(|own| own == joint)
-    };
-    let own = leftovers.iter().filter(is_there);
+    let own = leftovers.iter().filter(|left| acts_at(setting, one, left));
     own.max_by(|a, b| a.share.total_cmp(&b.share))
 }
 
@@ -116,9 +117,12 @@ fn left_open(diagnosis: &Diagnosis) -> f64 {
 /// The verdict with its first reasons.
 fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) {
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-    let most = diagnosis.leftovers.iter().max_by(|a, b| a.share.total_cmp(&b.share));
-    let explained = diagnosis.effects.iter().map(|one| one.size).fold(0.0, f64::max);
-    let unexplained = most.filter(|left| is_unexplained(left, explained));
+    // what explains one joint excuses nothing at another
+    let unexplained = diagnosis.leftovers.iter().filter(|left| {
+        let there = diagnosis.effects.iter().filter(|one| acts_at(setting, one, left));
+        is_unexplained(left, there.map(|one| one.size).fold(0.0, f64::max))
+    });
+    let unexplained = unexplained.max_by(|a, b| a.share.total_cmp(&b.share));
     let left = left_open(diagnosis);
     if left > policy::NOTHING_LIKE {
         let why = format!(
@@ -223,7 +227,7 @@ fn doubts(diagnosis: &Diagnosis, setting: &Setting<'_>, found: &Found) -> Vec<St
     }
     for &candidate in &found.dropped {
         reasons.push(format!(
-            "not told: {}, which makes logs less likely that its values were not fitted to",
+            "not told: {}, which does not help logs that its values were not fitted to",
             setting.candidates[candidate].name()
         ));
     }

@@ -124,9 +124,8 @@ impl Ambiguity<'_> {
         let power =
             self.log_of(&references).and_then(|log| self.seen(log, |seen| seen.power(seed)));
         let power = power.filter(|power| *power > 0.0).ok_or_else(|| {
-            let why =
-                "no motion that was tried tells them apart: in none of the logs that it would";
-            Cause::NoExperiment(format!("{why} give did the odds reach 100 to 1"))
+            let why = "the odds reach 100 to 1 in no log of the best one that was tried";
+            Cause::NoExperiment(why.to_owned())
         })?;
         let rivals: Vec<usize> = self.names[1..].iter().map(|one| one.candidate).collect();
         let before = self.seen(self.log.clone(), |seen| seen.least(seed));

@@ -71,18 +71,19 @@ pub(super) fn judge(
 }
 
 /// Whether an effect is a law, and not near to something else: it stands for nothing at another
-/// joint, no effect of its joint changes in time, and what is left beside it is little, or a
-/// disturbance without which held-out logs ask for it.
+/// joint, no effect of its joint changes in time, and what is left beside it is little, or no more
+/// than its sensors make while held-out logs ask for it. Noise of few steps of an encoder is as
+/// strong in slow bands as the motion is slow, not as in fast ones.
 fn is_law(diagnosis: &Diagnosis, setting: &Setting<'_>, one: &FoundEffect) -> bool {
     let joint = |one: &FoundEffect| setting.candidates[one.candidate].joint;
     let mut there = diagnosis.effects.iter().filter(|other| joint(other) == joint(one));
     let changes = there.any(|other| other.change_in_time.is_some());
     let left = left_beside(setting, &diagnosis.leftovers, one);
-    let is_disturbance = |left: &Leftover| {
-        let at = &diagnosis.places[left.equation];
-        diagnosis.structures.iter().all(|one| one.at != *at) && one.log_predicted > policy::NAMED
+    let is_noise = |left: &Leftover| {
+        let floor = diagnosis.train.floor.per_joint[left.equation].unwrap_or(0.0);
+        left.share < floor && one.log_predicted > policy::NAMED
     };
-    let stands = left.is_none_or(|left| !is_unexplained(left, one.size) || is_disturbance(left));
+    let stands = left.is_none_or(|left| !is_unexplained(left, one.size) || is_noise(left));
     stands && !changes && one.stands_for.is_none()
 }
 

@@ -51,18 +51,34 @@ fn friction_that_changes_a_little_keeps_its_name() {
     assert!(found.effects.iter().all(|one| one.change_in_time.is_none()), "{:?}", found.effects);
 }
 
-/// A force that no channel records, half as large as the friction beside it, takes the name of
-/// friction away from nobody, and is told.
+/// What a log says of Coulomb friction through an encoder of so large steps, beside a force below
+/// 3 Hz that no channel records: the names, and what is left over what friction does.
+fn friction(size: f64, step: f64, force: f64) -> (Vec<String>, f64) {
+    let made = |phase: f64, seed: u64| -> MeasuredLog {
+        let mut log = log(&motion(phase), &|at| MASS * at[2] + size * at[1].signum(), seed, 0.02);
+        let (mut random, mut slow) = (Random::new(seed + 7), 0.0);
+        let joint = &mut log.joints[0];
+        joint.q.iter_mut().for_each(|q| *q = (*q / step).round() * step);
+        joint.step = Some(step);
+        for torque in joint.tau.iter_mut().flatten() {
+            slow += STEP_S * TAU * 3.0 * (7.3 * random.normal() - slow);
+            *torque += force * slow;
+        }
+        log
+    };
+    let (found, candidates) = diagnosed(SLED, [made(0.0, 1), made(0.8, 2)]);
+    let named = found.effects.iter().filter(|one| one.is_named);
+    let names = named.map(|one| candidates[one.candidate].effect.clone()).collect();
+    let most = found.effects.iter().map(|one| one.size).fold(0.0, f64::max);
+    (names, found.leftovers[0].share / most)
+}
+
+/// An encoder of few steps makes noise that is strong where the motion is: friction has its name
+/// beside it. As large a force that no sensor makes leaves open what is there.
 #[test]
-fn friction_has_its_name_beside_a_disturbance() {
-    let mut random = Random::new(5);
-    let (mut slow, friction) = (0.0, 1.0);
-    let (found, names) = with(&mut |_, at| {
-        // noise below 3 Hz
-        slow += STEP_S * TAU * 3.0 * (0.5 * 7.3 * random.normal() - slow);
-        friction * at[1].signum() + slow
-    });
-    assert_eq!(names, ["coulomb"], "{:?}", found.reasons);
-    assert_eq!(found.verdict, Verdict::PartlyExplained, "{:?}", found.reasons);
-    assert!(found.structures.is_empty(), "{:?}", found.structures);
+fn friction_has_its_name_beside_noise_of_its_sensors() {
+    let (names, left) = friction(0.2, 1e-3, 0.0);
+    assert!(names == ["coulomb"] && left > 0.35, "{names:?} {left}");
+    let (names, left) = friction(0.07, 1e-5, 0.5);
+    assert!(names.is_empty() && left > 0.35, "{names:?} {left}");
 }

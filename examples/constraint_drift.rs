@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut table = Table::new(&[
         ("t [s]", Align::Right),
         ("constraints [m]", Align::Right),
-        ("their rates [m/s]", Align::Right),
+        ("their velocities [m/s]", Align::Right),
         ("Baumgarte [m]", Align::Right),
         ("minimal: energy [J]", Align::Right),
     ]);

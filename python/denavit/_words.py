@@ -10,7 +10,6 @@ OTHERWISE = {
     "accepts_cut": "accept_cut",
     "accepts_suspicious": "accept_suspicious",
     "decimation": "decimate",
-    "derivatives": "rates",
     "filter": "filter_hz",
     "parameters": "joint_parameters",
     "slow": "skip_slow",

@@ -140,7 +140,7 @@ def identify(
     filter_hz: float | str | None = None,
     decimate: int | None = None,
     average: float | Literal["found"] | None = None,
-    rates: Literal["differences", "logged"] = "differences",
+    derivatives: Literal["differences", "logged"] = "differences",
     prior: bool = False,
     resolution: float | None = None,
     instruments: Logs = (),
@@ -175,7 +175,7 @@ def identify(
         arguments += _options.flags(
             method=method, errors=errors, seed=seed, keep=keep, friction=friction,
             skip_slow=skip_slow, filter=filter_hz, decimate=decimate, average=average,
-            rates=rates, prior=prior, resolution=resolution, window=window_s,
+            derivatives=derivatives, prior=prior, resolution=resolution, window=window_s,
             accept_suspicious=accept_suspicious, accept_cut=accept_cut,
             svg=svg, motion_svg=motion_svg,
             html=inside / "report.html" if report else None,

@@ -196,8 +196,9 @@ def identify_long(
     ``runner`` computes the pieces (:func:`denavit.studies.on_ray.on_ray` on many machines, each of
     which reads the file by the same path); ``part`` is where rows of pieces are kept, so that a run
     that was broken off goes on. ``options`` are those of :func:`denavit.identify`: ``method``
-    ("ols" or "wls"), ``errors``, ``seed``, ``filter_hz``, ``decimate``, ``rates``, ``skip_slow``,
-    ``friction``, ``joint_parameters``, ``keep``, ``prior``, ``resolution``, ``accept_suspicious``.
+    ("ols" or "wls"), ``errors``, ``seed``, ``filter_hz``, ``decimate``, ``derivatives``,
+    ``skip_slow``, ``friction``, ``joint_parameters``, ``keep``, ``prior``, ``resolution``,
+    ``accept_suspicious``.
     Rows stand at equal distances of time.
     """
     table = _long_table(log, head, time)
@@ -258,8 +259,8 @@ def _long_table(log: PathLike, head: int, time: str) -> _Table:
 
 
 OPTIONS = (
-    "method", "errors", "seed", "keep", "friction", "skip_slow", "filter_hz", "decimate", "rates",
-    "prior", "resolution", "accept_suspicious", "joint_parameters",
+    "method", "errors", "seed", "keep", "friction", "skip_slow", "filter_hz", "decimate",
+    "derivatives", "prior", "resolution", "accept_suspicious", "joint_parameters",
 )  # fmt: skip
 """Options of identification that a long log has, too."""
 

@@ -103,7 +103,7 @@ def identify_statics(
     filter_hz: float | str | None = None,
     decimate: int | None = None,
     average: float | Literal["found"] | None = None,
-    rates: Literal["differences", "logged"] = "differences",
+    derivatives: Literal["differences", "logged"] = "differences",
     prior: bool = False,
     resolution: float | None = None,
     columns: PathLike | dict[str, Any] | None = None,
@@ -131,7 +131,7 @@ def identify_statics(
         arguments += _options.flags(
             method=method, errors=errors, seed=seed, keep=keep, friction=friction,
             skip_slow=skip_slow, filter=filter_hz, decimate=decimate, average=average,
-            rates=rates, prior=prior, resolution=resolution,
+            derivatives=derivatives, prior=prior, resolution=resolution,
             accept_suspicious=accept_suspicious, accept_cut=accept_cut,
             **{"with": joint_parameters},
         )  # fmt: skip

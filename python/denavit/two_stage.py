@@ -108,7 +108,7 @@ def identify_two_stage(
     filter_hz: float | str | None = None,
     decimate: int | None = None,
     average: float | Literal["found"] | None = None,
-    rates: Literal["differences", "logged"] = "differences",
+    derivatives: Literal["differences", "logged"] = "differences",
     columns: PathLike | dict[str, Any] | None = None,
     accept_suspicious: bool = False,
     accept_cut: bool = False,
@@ -133,7 +133,7 @@ def identify_two_stage(
         page = inside / "report.html" if report else None
         arguments += _options.flags(
             keep=keep, friction=friction, skip_slow=skip_slow, filter=filter_hz,
-            decimate=decimate, average=average, rates=rates,
+            decimate=decimate, average=average, derivatives=derivatives,
             accept_suspicious=accept_suspicious, accept_cut=accept_cut, html=page, svg=svg,
             **{"with": joint_parameters},
         )  # fmt: skip

@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     input: PathBuf,
     #[command(flatten)]
     effects: EffectsOption,
-    /// What the functions are made of; if nothing is said, what makes the fewest
+    /// What the functions are made of; by default, what makes the fewest
     #[arg(long, value_enum)]
     basis: Option<BasisName>,
     /// Joint parameters of a model to add to those of its bodies, separated by commas

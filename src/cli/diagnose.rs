@@ -21,7 +21,7 @@ use std::time::Instant;
 ///
 /// The model's own parameters are estimated again within their standard deviations. Effects of the
 /// catalogue are compared by the evidence of all logs, their values are fitted to --train, and
-/// --validate says what is then left. Exits with 1 if what is left is not explained, or if logs of
+/// --validate says what mismatch remains. Exits with 1 if that is not explained, or if logs of
 /// --validate are among those of --train.
 #[derive(Debug, Args)]
 #[command(after_help = "\

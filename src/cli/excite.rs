@@ -81,7 +81,7 @@ pub(crate) struct Arguments {
     /// Joints that do not move, separated by commas: knee=0.5
     #[arg(long, value_name = "JOINT=POSITION", value_delimiter = ',', value_parser = named)]
     hold: Vec<(String, f64)>,
-    /// Weights of joints, 1 over the noise of their torque; 1 where nothing is said, and 0 for
+    /// Weights of joints, 1 over the noise of their torque; 1 by default, and 0 for
     /// the wrench on a floating base
     #[arg(long, value_name = "JOINT=WEIGHT", value_delimiter = ',', value_parser = named)]
     weights: Vec<(String, f64)>,
@@ -104,7 +104,7 @@ pub(crate) struct Arguments {
     /// Steps of the grid of times that the solver sees
     #[arg(long, value_name = "N")]
     grid: Option<usize>,
-    /// Threads; as many as the machine has where nothing is said. They do not change the result
+    /// Threads; by default as many as the machine has. They do not change the result
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
     /// Draw the trajectory with its limits, and the condition number over the iterations; - is
@@ -134,7 +134,7 @@ enum Basis {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum End {
-    /// No rate
+    /// No velocity
     Rest,
     /// No acceleration
     Unaccelerated,

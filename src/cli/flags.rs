@@ -4,13 +4,12 @@
 use std::borrow::Cow;
 
 /// Options whose flags are called otherwise, or take what a word says.
-const OTHERWISE: [(&str, &str); 12] = [
+const OTHERWISE: [(&str, &str); 11] = [
     ("accepts_cut", "accept-cut"),
     ("accepts_suspicious", "accept-suspicious"),
     ("columns", "columns MAP.json"),
     ("controller", "controller FILE"),
     ("decimation", "decimate"),
-    ("derivatives", "rates"),
     ("parameters", "with"),
     ("period_s", "period"),
     ("slow", "skip-slow"),

@@ -98,10 +98,10 @@ pub(crate) fn function_names() -> impl TypedValueParser<Value = FunctionName> {
     })
 }
 
-/// Whether the model's values go into the functions.
+/// Whether the nominal parameters go into the functions.
 #[derive(Debug, Args)]
 pub(crate) struct FlavourOption {
-    /// Fold the model's values into the functions (otherwise parameters are set at run time)
+    /// Fold the nominal parameters into the functions (otherwise parameters are set at run time)
     #[arg(long)]
     baked: bool,
     /// Parameters that the model gives as 0 stay 0, and have no field and no column of a regressor

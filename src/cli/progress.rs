@@ -21,10 +21,10 @@ const BETWEEN_LINES: Duration = Duration::from_secs(10);
 /// How often a terminal's line is drawn, and how often it is asked whether a line is due.
 const TICK: Duration = Duration::from_millis(200);
 
-/// Less than this share says little of what is left.
+/// Less than this share says little of the rest.
 const TELLING_SHARE: f64 = 0.02;
 
-/// The line that a terminal shows now: what else is said goes above it.
+/// The line that a terminal shows now: other messages go above it.
 static DRAWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
 /// A poisoned lock holds a line that is half said, no harm.
@@ -54,7 +54,7 @@ struct Stage {
 /// Work of one or more stages, one after the other.
 struct Work {
     is_terminal: bool,
-    /// Whether times of stages are said.
+    /// Whether times of stages are reported.
     is_timed: bool,
     began: Instant,
     stage: Option<Stage>,
@@ -206,7 +206,7 @@ impl Work {
 }
 
 impl Stage {
-    /// How far it is: the share, the detail, and the time that is left where it can be told.
+    /// How far it is: the share, the detail, and the time that is left where it is known.
     fn state(&self, now: Instant) -> String {
         let elapsed = now.duration_since(self.began);
         let share = self.share.map(|share| format!("{:.0} %", 100.0 * share));
@@ -217,7 +217,7 @@ impl Stage {
     }
 }
 
-/// What is left of work of which a share is done, if it goes on as it went.
+/// The rest of work of which a share is done, if it goes on as it went.
 fn left(elapsed: Duration, share: f64) -> Option<String> {
     let told = elapsed >= SHORT && (TELLING_SHARE..1.0).contains(&share);
     told.then(|| format!("about {} left", rounded(elapsed.mul_f64((1.0 - share) / share))))

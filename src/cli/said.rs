@@ -13,7 +13,7 @@ use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::time::Duration;
 
-/// How much is said.
+/// How much is reported.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Args)]
 pub(super) struct Loudness {
     /// Show no progress, and say no notes: standard error has what is wrong, and nothing else
@@ -38,12 +38,12 @@ impl Loudness {
         self.quiet && self.verbose
     }
 
-    /// Whether nothing is said but what is wrong.
+    /// Whether nothing is reported but what is wrong.
     pub(super) fn is_quiet(self) -> bool {
         self.quiet
     }
 
-    /// Whether times are said.
+    /// Whether times are reported.
     pub(super) fn is_verbose(self) -> bool {
         self.verbose
     }

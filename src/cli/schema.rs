@@ -7,7 +7,7 @@ use std::io::Write;
 
 /// Print the JSON Schema of a file format
 ///
-/// An editor that is told of it completes and checks model files while they are written.
+/// An editor that knows it completes and checks model files while they are written.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  denavit schema model")]
 pub(crate) struct Arguments {

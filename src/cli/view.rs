@@ -22,7 +22,7 @@ Example:
 pub(crate) struct Arguments {
     /// The folder
     folder: PathBuf,
-    /// The port of the address; one that is free if nothing is said
+    /// The port of the address; one that is free by default
     #[arg(long, value_name = "PORT", default_value = "0", hide_default_value = true)]
     port: u16,
     /// Write the page once to this file of the folder, and serve nothing

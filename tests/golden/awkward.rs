@@ -223,7 +223,7 @@ impl Parameters<f64> {
 /// Joint torques of a motion: tau = D(q) qdd + C(q, qd) qd + G(q) + drive torques.
 ///
 /// - `q`: joint positions (rad, m)
-/// - `qd`: joint rates (rad/s, m/s)
+/// - `qd`: joint velocities (rad/s, m/s)
 /// - `qdd`: joint accelerations (rad/s^2, m/s^2)
 ///
 /// Result: Joint torques, positive along the axes \[N m, N\].

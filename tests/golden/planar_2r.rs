@@ -302,7 +302,7 @@ impl Parameters<f64> {
 /// Joint torques of a motion: tau = D(q) qdd + C(q, qd) qd + G(q) + drive torques.
 ///
 /// - `q`: joint positions (rad, m)
-/// - `qd`: joint rates (rad/s, m/s)
+/// - `qd`: joint velocities (rad/s, m/s)
 /// - `qdd`: joint accelerations (rad/s^2, m/s^2)
 ///
 /// Result: Joint torques, positive along the axes \[N m, N\].
@@ -366,7 +366,7 @@ pub struct DynamicsTerms<S> {
 /// D(q), C(q, qd) and G(q) at once; they share most of their work.
 ///
 /// - `q`: joint positions (rad, m)
-/// - `qd`: joint rates (rad/s, m/s)
+/// - `qd`: joint velocities (rad/s, m/s)
 ///
 /// One call: 12 mul, 10 add, 2 neg, 3 sincos.
 #[must_use]
@@ -405,7 +405,7 @@ pub fn dynamics_terms<S: Scalar>(
 /// Joint accelerations qdd that given torques cause.
 ///
 /// - `q`: joint positions (rad, m)
-/// - `qd`: joint rates (rad/s, m/s)
+/// - `qd`: joint velocities (rad/s, m/s)
 /// - `tau`: joint torques (N m, N)
 ///
 /// Result: Joint accelerations \[rad/s^2, m/s^2\].
@@ -503,7 +503,7 @@ fn link_jacobian_link2<S: Scalar>(parameters: &Parameters<S>, q: &[S; DOF]) -> [
 /// Kinetic energy.
 ///
 /// - `q`: joint positions (rad, m)
-/// - `qd`: joint rates (rad/s, m/s)
+/// - `qd`: joint velocities (rad/s, m/s)
 ///
 /// Result: Of bodies and rotors \[J\].
 ///
@@ -520,7 +520,7 @@ pub fn kinetic_energy<S: Scalar>(parameters: &Parameters<S>, q: &[S; DOF], qd: &
 /// Regressor R: torques per unit of each base parameter.
 ///
 /// - `q`: joint positions (rad, m)
-/// - `qd`: joint rates (rad/s, m/s)
+/// - `qd`: joint velocities (rad/s, m/s)
 /// - `qdd`: joint accelerations (rad/s^2, m/s^2)
 ///
 /// Result: Row: joint. Columns, those of `base_parameters`: sx_link1, sy_link1, Jzz_link1,

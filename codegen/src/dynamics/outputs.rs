@@ -69,7 +69,7 @@ pub(super) fn outputs(
 
 fn state_rates(dag: &mut Dag, candidate: &Candidate<'_>) -> Output {
     let rates = candidate.state_rates(dag);
-    let doc = "Rates of the states of added effects, each per second.";
+    let doc = "Derivatives of the states of added effects, each per second.";
     let mut rates = output("state_rates", &[rates.len()], rates, doc);
     rates.details = candidate.robot.law_states().map(|state| state.name.clone()).collect();
     rates
@@ -113,7 +113,7 @@ fn derivatives(
         let [by_position, by_rate] = candidate.inverse_derivatives(dag, None);
         return vec![
             output("dtau_dq", &[n, n], by_position.concat(), "Row: torque, column: position."),
-            output("dtau_dqd", &[n, n], by_rate.concat(), "Row: torque, column: rate."),
+            output("dtau_dqd", &[n, n], by_rate.concat(), "Row: torque, column: velocity."),
         ];
     }
     let tau = efforts(candidate);
@@ -121,7 +121,7 @@ fn derivatives(
     let [by_position, by_rate, by_torque] = candidate.forward_derivatives(dag, &qdd);
     vec![
         output("dqdd_dq", &[n, n], by_position.concat(), "Row: acceleration, column: position."),
-        output("dqdd_dqd", &[n, n], by_rate.concat(), "Row: acceleration, column: rate."),
+        output("dqdd_dqd", &[n, n], by_rate.concat(), "Row: acceleration, column: velocity."),
         output("dqdd_dtau", &[n, n], by_torque.concat(), "D^-1, symmetric."),
     ]
 }

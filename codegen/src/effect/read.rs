@@ -269,7 +269,7 @@ impl Reading<'_> {
                 let per_second = dimension.per(seconds).unwrap_or(Dimension::NONE);
                 let rate = fields.require("rate", self.report);
                 let rate = rate.and_then(|node| node.scalar(self.report));
-                let rate = self.law.quantity(rate, "the rate", per_second, self.report);
+                let rate = self.law.quantity(rate, "the derivative", per_second, self.report);
                 let initial = fields.scalar("initial", self.report);
                 let initial =
                     self.law.quantity(initial, "the initial value", dimension, self.report);

@@ -63,7 +63,9 @@ pub(super) fn summary(name: FunctionName) -> &'static str {
         }
         FunctionName::KineticEnergy => "Kinetic energy.",
         FunctionName::PotentialEnergy => "Potential energy.",
-        FunctionName::StateRates => "Rates of the states of the added effects.",
+        FunctionName::StateRates => {
+            "Derivatives of the states of the added effects, each per second."
+        }
         FunctionName::Regressor => "Regressor R0: torques per unit of each unknown parameter.",
         FunctionName::BaseRegressor => "Regressor R: torques per unit of each base parameter.",
         FunctionName::BaseParameters => {
@@ -76,7 +78,7 @@ pub(super) fn summary(name: FunctionName) -> &'static str {
 pub(super) fn argument(argument: &ArgumentShape) -> &'static str {
     match argument.name {
         "q" => "joint positions (rad, m)",
-        "qd" => "joint rates (rad/s, m/s)",
+        "qd" => "joint velocities (rad/s, m/s)",
         "qdd" => "joint accelerations (rad/s^2, m/s^2)",
         "tau" => "joint torques (N m, N)",
         "t" => "time (s)",

@@ -23,7 +23,7 @@ pub(super) fn misread(data: &Data<'_>, residual: &[f64]) -> Vec<MisreadColumns> 
 }
 
 /// Whether a reading leaves little beside what it explains, as is asked of an effect that is named:
-/// by an estimate, or by the model's own values, since an estimate adapts to a unit. What leaves as
+/// by an estimate, or by the nominal parameters, since an estimate adapts to a unit. What leaves as
 /// much, like a stop that was hit, is told from a misread column by no odds between readings.
 fn explains(reading: &MisreadColumns) -> bool {
     let both = [Some(reading.left_by_estimate), reading.left_by_model];

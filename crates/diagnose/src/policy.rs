@@ -1,4 +1,4 @@
-//! The numbers that decide what is said of what was found, each with its unit and where it is
+//! The numbers that decide what is reported of what was found, each with its unit and where it is
 //! from: those of each module.
 
 /// `columns.rs`: Columns that are other ones than they are taken for.
@@ -100,9 +100,10 @@ pub(crate) mod reading_law {
     pub(crate) const REACH: f64 = 8.0;
 }
 
-/// `known.rs`: What the rows of a joint tell of its torque, where its drive turns around or rests.
+/// `known.rs`: What the rows of a joint tell of its torque at velocity reversals and rests of its
+/// drive.
 pub(crate) mod known {
-    /// A rate that is none but for its sign [rad/s, m/s].
+    /// A velocity that is none but for its sign [rad/s, m/s].
     pub(crate) const CREEP: f64 = 1e-9;
 
     /// The share of an event that the filter rings with beside it.
@@ -119,10 +120,10 @@ pub(crate) mod nominal {
     pub(crate) const JOINT: f64 = 1.0;
 }
 
-/// `signals.rs`: Logs as the diagnosis looks at them: motion at the full rate, torques through one
-/// filter.
+/// `signals.rs`: Logs as the diagnosis looks at them: motion at the full sampling rate, torques
+/// through one filter.
 pub(crate) mod signals {
-    /// Rows in a period of the cutoff: what the filter passes is below half their rate.
+    /// Rows in a period of the cutoff: what the filter passes is below half their sampling rate.
     pub(crate) const ROWS_PER_PERIOD: f64 = 2.5;
 
     /// Rows of a log, at least: some for each band of frequencies.
@@ -131,8 +132,8 @@ pub(crate) mod signals {
     /// Rows on either side of a log's middle beyond which rows at its ends are spared.
     pub(crate) const ENOUGH_ROWS: usize = 32;
 
-    /// The rate of laws \[Hz\], at least: a step of friction is not at a sample, and the mean of a
-    /// cell knows where it is.
+    /// The sampling rate of laws \[Hz\], at least: a step of friction is not at a sample, and the
+    /// mean of a cell knows where it is.
     pub(crate) const LEAST_RATE_HZ: f64 = 1000.0;
 }
 
@@ -156,7 +157,7 @@ pub(crate) mod standstill {
     pub(crate) const SLIDES: f64 = 0.9;
 
     /// The power of time with which a drive leaves: 3 if its inertia is all that matters, 2 if
-    /// what opposes its rate is, or if friction falls when it leaves.
+    /// what opposes its velocity is, or if friction falls when it leaves.
     pub(crate) const POWER: f64 = 2.5;
 
     /// Steps that a drive moves before a reading of it changes, in the mean.
@@ -192,7 +193,8 @@ pub(crate) mod worth {
 
 /// `regime.rs`: Where in the motion torques disagree.
 pub(crate) mod regime {
-    /// By how much the share of what is left in a regime must exceed that of the time to be told.
+    /// By how much the share of the squared residual in a regime must exceed that of the time to be
+    /// reported.
     pub(crate) const TOLD: f64 = 0.15;
 
     /// From this share of the largest torque on, a torque is at its limit if it does not change:

@@ -120,9 +120,10 @@ impl Signals {
     pub fn new(log: MeasuredLog, filters: Filters) -> Result<Self, denavit_measure::Error> {
         let MeasuredLog { file, start_s, step_s, joints, .. } = log;
         let filter_of = |cutoff_hz: f64| {
-            let nyquist_hz = 0.5 / step_s;
+            // the filter of torques is the one that is chosen
+            let limit_hz = 0.5 / step_s * filters.torque_hz / filters.motion_hz;
             let found = Butterworth::new(ORDER, cutoff_hz, step_s);
-            found.ok_or_else(|| denavit_measure::Error::cutoff(cutoff_hz, nyquist_hz))
+            found.ok_or_else(|| denavit_measure::Error::cutoff(filters.torque_hz, limit_hz))
         };
         let (wide, filter) = (filter_of(filters.motion_hz)?, filter_of(filters.torque_hz)?);
         let samples = joints.first().map_or(0, |joint| joint.q.len());

@@ -127,7 +127,7 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
     let left = left_open(diagnosis);
     if left > policy::NOTHING_LIKE {
         let why = format!(
-            "the model is nothing like the logs: {} of the torque is left; a column of another \
+            "the model is nothing like the logs: the torque mismatch is {}; a column of another \
              joint, sign or unit, or another robot",
             percent(left)
         );
@@ -135,14 +135,17 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
     }
     let slow = unexplained.map(|left| {
         let (share, place) = (percent(left.share), &diagnosis.places[left.equation]);
-        format!("{share} of the torque of {place} is left in the bands in which the robot moves")
+        format!(
+            "a residual of {share} of the torque of {place} is in the bands in which the robot \
+                 moves"
+        )
     });
     let broad = || {
         let (place, share) = broad(diagnosis)?;
         let share = percent(share);
         Some(format!(
-            "{share} of the torque of {place} is left, evenly over all frequencies: more than \
-             sensors have"
+            "a residual of {share} of the torque of {place} is spread evenly over all frequencies: \
+             more than sensors have"
         ))
     };
     let what = slow.or_else(broad);
@@ -205,8 +208,8 @@ fn doubts(diagnosis: &Diagnosis, setting: &Setting<'_>, found: &Found) -> Vec<St
     for one in diagnosis.effects.iter().filter(|one| !one.exact.is_empty()) {
         let name = setting.candidates[one.candidate].name();
         reasons.push(format!(
-            "exact alias: {name} does what parameters of the model do in every motion ({}); what \
-             is told is that they are off by more than the model states",
+            "exact alias: {name} does what parameters of the model do in every motion ({}); the \
+             logs say that they are off by more than the model states",
             one.exact.join(", ")
         ));
     }
@@ -228,7 +231,7 @@ fn doubts(diagnosis: &Diagnosis, setting: &Setting<'_>, found: &Found) -> Vec<St
     }
     for &candidate in &found.dropped {
         reasons.push(format!(
-            "not told: {}, which does not help logs that its values were not fitted to",
+            "not reported: {}, which does not help logs that its values were not fitted to",
             setting.candidates[candidate].name()
         ));
     }
@@ -260,8 +263,8 @@ fn untold(data: &Data<'_>, residual: &[f64]) -> Vec<String> {
         let share = (left / torque).sqrt();
         (share > policy::LEFT && told < UNTOLD * left).then(|| {
             format!(
-                "{:.1} % of the torque of {} is left in held-out logs, most of it where the drive \
-                 turns around or rests: friction is not known there",
+                "held-out logs have a residual of {:.1} % of the torque of {}, most of it at \
+                 velocity reversals and rests of the drive: friction is not known there",
                 100.0 * share,
                 data.nominal.equation_name(equation)
             )

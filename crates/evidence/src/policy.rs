@@ -19,22 +19,22 @@ pub const SETTLED: f64 = 1e-2;
 pub const BANDS: [f64; 8] =
     [0.0, 1.0 / 30.0, 1.0 / 15.0, 0.1, 1.0 / 6.0, 4.0 / 15.0, 7.0 / 15.0, 2.0 / 3.0];
 
-/// The share of the power of rates that is driven by references, and how much further than that
-/// frequency a motion is taken to be driven: what is beyond answers disturbances, and columns made
-/// of accelerations have the same noise there as the torque that answers them.
+/// The share of the power of velocities that is driven by references, and how much further than
+/// that frequency a motion is taken to be driven: what is beyond answers disturbances, and columns
+/// made of accelerations have the same noise there as the torque that answers them.
 pub const DRIVEN_SHARE: f64 = 0.995;
 /// See [`DRIVEN_SHARE`].
 pub const DRIVEN_REACH: f64 = 2.0;
 
 /// The cutoff of torques over the driven frequency, which leaves bands above the motion that tell
-/// noise, and its bounds \[Hz\] and as a share of the rate of sampling.
+/// noise, and its bounds \[Hz\] and as a share of the sampling rate.
 pub const CUTOFF_OVER_DRIVEN: f64 = 5.0;
 /// See [`CUTOFF_OVER_DRIVEN`].
 pub const CUTOFF_HZ: [f64; 2] = [4.0, 15.0];
 /// See [`CUTOFF_OVER_DRIVEN`].
 pub const CUTOFF_OF_RATE: f64 = 0.05;
 
-/// What is believed of the size of an effect, as a share of its joint's torque.
+/// The prior of the size of an effect, as a share of its joint's torque.
 pub const SIZE: f64 = 0.3;
 
 /// The same of angles that are off [rad, m], and of lengths that start at 0 \[m\].
@@ -77,7 +77,7 @@ pub const WORTH: f64 = 3e-3;
 /// further effect of a joint that is smaller than this share of the largest one has no name.
 pub const SAME: f64 = 0.1;
 
-/// A rival within these log odds of what is named is told beside it: less than what a name asks
+/// A rival within these log odds of what is named is reported beside it: less than what a name asks
 /// for.
 pub const RIVAL: f64 = 4.6;
 
@@ -96,20 +96,20 @@ pub const FAR: f64 = 60.0;
 /// where it says nothing, -log Phi(-1) - log 2.
 pub const SIDE: [f64; 2] = [0.306_852_819_440_054_7, 1.147_874_464_449_318_4];
 
-/// What is left of the belief in small factors in a second first look: large effects are seen
+/// What remains of the belief in small factors in a second first look: large effects are seen
 /// beside the noise that they leave.
 pub const UNBELIEVED: f64 = 1e-3;
 
 /// Pairs of effects that are weighed whole after the first look.
 pub const PAIRS: usize = 3;
 
-/// Rounds in which variances are found, of candidates and of what is told.
+/// Rounds in which variances are found, of candidates and of what is reported.
 pub const ROUNDS: [usize; 2] = [8, 25];
 
 /// Rounds in which curved parameters are linearised anew.
 pub const LINEARISED: usize = 8;
 
-/// What is left of slow bands beyond this many times the level of the faster ones has structure;
+/// The residual in slow bands beyond this many times the level of the faster ones has structure;
 /// it is missing physics or a disturbance if more than a share of the torque, and than a share of
 /// what was explained.
 pub const FLAT: f64 = 1.5;
@@ -118,7 +118,7 @@ pub const LEFT: f64 = 8e-3;
 /// See [`FLAT`].
 pub const LEFT_OF_EXPLAINED: f64 = 0.35;
 
-/// How far an effect is believed to change in the course of a log, as a share of itself, where it
+/// The prior of how far an effect changes in the course of a log, as a share of itself, where it
 /// does.
 pub const CHANGE: f64 = 0.5;
 
@@ -129,14 +129,14 @@ pub const CHANGED: f64 = 1.0 / 3.0;
 /// The least share of torque that an effect must do at one deviation to be looked at.
 pub const LEAST_FELT: f64 = 1e-7;
 
-/// Above this share of the torque, what is left says that model and logs are not of one robot.
+/// Above this share of the torque, the residual says that model and logs are not of one robot.
 pub const NOTHING_LIKE: f64 = 0.6;
 
 /// Periods of a law that repeats along a joint, of what the logs cover of it, at least: less of one
 /// is like any smooth law of the position.
 pub const PERIODS: f64 = 1.5;
 
-/// Above this share of the torque, and this many times the noise that sensors have, what is left is
+/// Above this share of the torque, and this many times the noise that sensors have, the residual is
 /// no noise, however even its spectrum is.
 pub const BROAD: f64 = 0.04;
 /// See [`BROAD`].

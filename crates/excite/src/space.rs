@@ -58,7 +58,7 @@ impl Family {
 /// What is asked of start and end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ends {
-    /// No rate.
+    /// No velocity.
     pub at_rest: bool,
     /// No acceleration.
     pub unaccelerated: bool,

@@ -98,7 +98,7 @@ impl Identification {
         self.periods < SHORT
     }
 
-    /// Whether the model's own values leave far more than there is.
+    /// Whether the nominal parameters leave far more than there is.
     pub fn is_of_other_robot(&self) -> bool {
         self.before.is_some_and(|before| before > OTHER)
     }

@@ -7,7 +7,7 @@ use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 
 /// Takes the torques of motors that do not carry their joints out of a log, and says which: the
-/// joint rests, and its torque does not change as the load does that the model's own values make of
+/// joint rests, and its torque does not change as the load does that the nominal parameters make of
 /// the motion of the others. Nothing is known there but that something else holds the joint.
 pub fn leave_out_idle_motors(model: &RegressionModel, log: &mut Conditioned) -> Vec<JointIndex> {
     let Some(values) = nominal_values(model) else { return Vec::new() };

@@ -15,7 +15,7 @@ pub(crate) mod comparison {
     pub(crate) const APART: f64 = 3.0;
 }
 
-/// `estimate/consistent.rs`: Bodies that exist: the parameters nearest to an estimate with
+/// `estimate/consistent.rs`: Physical consistency: the parameters nearest to an estimate with
 /// positive definite pseudo-inertias, and friction and rotor inertia that are not negative.
 pub(crate) mod consistent {
     /// What a unit of change of a body's coordinates costs, in squared standard errors of the
@@ -28,7 +28,7 @@ pub(crate) mod consistent {
     /// The least share of its value in the file that a positive number of it keeps.
     pub(crate) const LEAST_OF: f64 = 1e-6;
 
-    /// From so many standard errors on the search goes along the way from the model's values to
+    /// From so many standard errors on the search goes along the way from the nominal parameters to
     /// the estimate, in so many stages: where columns are products, what fits lies in valleys that
     /// are narrow and bent, and each stage begins at the bottom of one.
     pub(crate) const FAR: f64 = 2.0;
@@ -56,7 +56,7 @@ pub(crate) mod contradiction {
     /// beat with the samples.
     pub(crate) const OF_BEATS: f64 = 10.0;
 
-    /// What a constant or a factor leaves of the squares of what it is told for, at most.
+    /// What a constant or a factor leaves of the squares of what it is reported for, at most.
     pub(crate) const ALIKE: f64 = 0.25;
 }
 
@@ -118,10 +118,11 @@ pub(crate) mod least_squares {
     pub(crate) const FEWEST_DEGREES: f64 = 3.0;
 }
 
-/// `estimate/left_out.rs`: Rows that are left out: where a joint turns round or hardly moves, its
-/// friction is not what the sign of its rate says, and the filter smears that over its own time.
+/// `estimate/left_out.rs`: Rows that are left out: where a joint reverses or hardly moves, its
+/// friction is not what the sign of its velocity says, and the filter smears that over its own
+/// time.
 pub(crate) mod left_out {
-    /// Deviations of a rate's noise that are slow.
+    /// Deviations of a velocity's noise that are slow.
     pub(crate) const NOISE: f64 = 3.0;
 
     /// The bias of friction, in its standard errors, from which on rows are left out: an interval
@@ -134,11 +135,11 @@ pub(crate) mod left_out {
 
 /// `estimate/left_over.rs`: What is left of torques: how much, and whether it is noise.
 pub(crate) mod left_over {
-    /// Noise is another one after half a period of the filter's cutoff: what is left is still
+    /// Noise is another one after half a period of the filter's cutoff: the residual is still
     /// correlated with itself by so much if it is none.
     pub(crate) const NO_NOISE: f64 = 0.5;
 
-    /// The share of a joint's torque from which on it is said that something is left that is none.
+    /// The share of a joint's torque from which on a residual that is no noise is reported.
     pub(crate) const SAID: f64 = 0.005;
 }
 
@@ -155,25 +156,25 @@ pub(crate) mod report {
     /// How much of a parameter may lie in directions that are not excited.
     pub(crate) const DEAD_SHARE: f64 = 1e-6;
 
-    /// The bias from noise of the positions, in standard errors, from which on it is said: an
+    /// The bias from noise of the positions, in standard errors, from which on it is reported: an
     /// interval of 95 % that is off by so much holds in 92 %.
     pub(crate) const BIASING: f64 = 0.5;
 
     /// Deviations of a change that are hardly chance: a lower filter is tried.
     pub(crate) const LIKELY: f64 = 2.5;
 
-    /// Those of one that is none, of any of dozens of parameters: it is said.
+    /// Those of one that is none, of any of dozens of parameters: it is reported.
     pub(crate) const SURE: f64 = 3.5;
 }
 
-/// `estimate/rests.rs`: Rests of joints that move in between: their rows count beside a constant.
+/// `estimate/rests.rs`: Rests of joints that move in between: rest rows kept, one free offset each.
 pub(crate) mod rests {
-    /// How much the torque of a joint at rest must be like the load that the model's own values
+    /// How much the torque of a joint at rest must be like the load that the nominal parameters
     /// make of the motion of the others, as a correlation.
     pub(crate) const ALIKE: f64 = 0.7;
 
-    /// The variance of what is left at rest over that of what an estimate from motion alone leaves
-    /// of motion, above which something else than the motor holds the joint.
+    /// The variance of the residual at rest over that of the residual of an estimate from motion
+    /// alone, above which something else than the motor holds the joint.
     pub(crate) const HELD: f64 = 4.0;
 
     /// What stiction holds is a share of Coulomb friction; of less an estimate that is not the
@@ -212,7 +213,7 @@ pub(crate) mod unexplained {
     pub(crate) const LEFT: f64 = 0.9;
 
     /// The share that must be left where it is no noise: noise is another one after half a period
-    /// of the filter's cutoff, and what is left is still correlated with itself by so much.
+    /// of the filter's cutoff, and the residual is still correlated with itself by so much.
     pub(crate) const LEFT_ALIKE: f64 = 0.3;
 
     /// See [`LEFT_ALIKE`].
@@ -267,16 +268,16 @@ pub(crate) mod identification {
     /// from which on it needs a lower filter: more would hide a contradiction, or pass for one.
     pub(crate) const NOISY: f64 = 0.01;
 
-    /// The share of a torque from which on it is said what the filter makes of a motion that is
-    /// too fast for it, if it is also this share of what is left.
+    /// The share of a torque from which on it is reported what the filter makes of a motion that is
+    /// too fast for it, if it is also this share of the residual.
     pub(crate) const SMEARED: [f64; 2] = [0.01, 0.3];
 
-    /// What is left with the model's own values, over the torques, from which on the robot is
+    /// The residual with the nominal parameters, over the torques, from which on the robot is
     /// another.
     pub(crate) const OTHER: f64 = 10.0;
 
-    /// Standard errors between an estimate and the nearest bodies from which on what it is from is
-    /// doubted: good logs have next to none, misread ones any number.
+    /// Standard errors between an estimate and the nearest physically consistent parameters from
+    /// which on the log is doubted: good logs have next to none, mislabelled ones any number.
     pub(crate) const FAR: f64 = 20.0;
 }
 
@@ -316,7 +317,7 @@ pub(crate) mod statics {
     pub(crate) const OF_ANGLES: [f64; 3] =
         [-1.0, std::f64::consts::PI / 180.0, 180.0 / std::f64::consts::PI];
 
-    /// What the model's own values leave of the torques must be more than this share, and fall to
+    /// What the nominal parameters leave of the torques must be more than this share, and fall to
     /// this share of it and to less than this.
     pub(crate) const FAR: f64 = 0.2;
 

@@ -75,7 +75,7 @@ pub fn check_units(
     if faults.is_empty() { Ok(()) } else { Err(faults.into()) }
 }
 
-/// The unit of torques or positions with which the model's own values make far more of what holds
+/// The unit of torques or positions with which the nominal parameters make far more of what holds
 /// the postures; none if the model lacks one, or there are no two torques.
 fn misread_postures(model: &RegressionModel, measurements: &[StaticMeasurement]) -> Option<Error> {
     let phi = model.model_axes()?;
@@ -113,9 +113,9 @@ fn misread_postures(model: &RegressionModel, measurements: &[StaticMeasurement])
     let what = if of_torques { "torques" } else { "positions" };
     let how = if factor == -1.0 { "have the wrong sign" } else { "be in another unit" };
     let text = format!(
-        "{what} of the postures seem to {how}: the model's own values leave {:.0} % of the \
-         torques, and {:.0} % with {factor} times the {what}\n  hint: `logs.accepts_suspicious` \
-         takes them as they are",
+        "{what} of the postures seem to {how}: with the nominal parameters the residual is {:.0} % \
+         of the torques, and {:.0} % with {factor} times the {what}\n  hint: \
+         `logs.accepts_suspicious` takes them as they are",
         100.0 * before,
         100.0 * after
     );

@@ -1,6 +1,7 @@
 //! Why a log is not read, or cannot be conditioned.
 
-use crate::log::LogFaults;
+use crate::log::{LogFaults, MappingCause};
+use denavit_codegen::model::FileError;
 use denavit_numerics::short;
 use std::fmt;
 
@@ -32,16 +33,12 @@ pub enum ErrorKind {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Cause {
     Log(LogFaults),
-    /// A mapping of columns cannot be read: its file, line and column from 1, and what is wrong.
-    Mapping {
-        file: String,
-        at: (usize, usize),
-        cause: String,
-    },
-    /// The cutoff is not below half the sampling rate, or the order not from 1 to 10.
+    /// A mapping of columns cannot be read; holds all that is wrong with it.
+    Mapping(FileError<MappingCause>),
+    /// The cutoff is not below a limit, or the order not from 1 to 10.
     Cutoff {
         cutoff_hz: f64,
-        nyquist_hz: f64,
+        limit_hz: f64,
     },
     /// Too few samples for this filter and decimation, whose edges are cut.
     TooShort {
@@ -88,16 +85,16 @@ impl Error {
         Cause::TooShort { samples, needed }.into()
     }
 
-    /// No filter has its cutoff there; half the sampling rate is `nyquist_hz`.
-    pub fn cutoff(cutoff_hz: f64, nyquist_hz: f64) -> Self {
-        Cause::Cutoff { cutoff_hz, nyquist_hz }.into()
+    /// No filter has its cutoff there; it must be below `limit_hz`.
+    pub fn cutoff(cutoff_hz: f64, limit_hz: f64) -> Self {
+        Cause::Cutoff { cutoff_hz, limit_hz }.into()
     }
 
     /// What kind of reason it is.
     pub fn kind(&self) -> ErrorKind {
         match &*self.0 {
             Cause::Log(_) => ErrorKind::Log,
-            Cause::Mapping { .. } => ErrorKind::Mapping,
+            Cause::Mapping(_) => ErrorKind::Mapping,
             Cause::Cutoff { .. } => ErrorKind::Cutoff,
             Cause::TooShort { .. } => ErrorKind::TooShort,
             Cause::NoRates(_) | Cause::NotTheDerivative { .. } => ErrorKind::Derivatives,
@@ -131,18 +128,13 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &*self.0 {
             Cause::Log(faults) => write!(f, "{faults}"),
-            Cause::Mapping { file, at: (line, column), cause } => write!(
+            Cause::Mapping(faults) => write!(f, "{faults}"),
+            Cause::Cutoff { cutoff_hz, limit_hz } => write!(
                 f,
-                "{file}:{line}:{column}: {cause}\n  hint: as {{\"q_knee\": {{\"column\": \"deg\", \
-                 \"scale\": 0.0174533, \"offset\": 0}}, \"t\": \"time\", \"tau_hip\": \
-                 null, \"q_{{joint}}\": \"/joint_states/{{joint}}/position\"}}"
-            ),
-            Cause::Cutoff { cutoff_hz, nyquist_hz } => write!(
-                f,
-                "no filter of order 1 to 10 has its cutoff at {} Hz: half the rate of \
-                 sampling is {} Hz",
+                "no filter of order 1 to 10 has its cutoff at {} Hz: at this sampling rate it must \
+                 be below {} Hz\n  hint: `conditions.filter` with a lower cutoff",
                 short(*cutoff_hz),
-                short(*nyquist_hz)
+                short(*limit_hz)
             ),
             Cause::TooShort { samples, needed } => write!(
                 f,

@@ -1,8 +1,8 @@
 //! The numbers that decide what is said of logs, each with its unit and where it is from: those of
 //! each module.
 
-/// `condition/derivatives.rs`: Whether logged rates and accelerations are the derivatives of the
-/// positions.
+/// `condition/derivatives.rs`: Whether logged velocities and accelerations are the derivatives of
+/// the positions.
 pub(crate) mod derivatives {
     /// By how much a factor may differ from 1,
     pub(crate) const FACTOR: f64 = 0.1;
@@ -50,8 +50,8 @@ pub(crate) mod noise {
     /// smaller with each order.
     pub(crate) const WHITE: f64 = 0.9;
 
-    /// A joint moves if its rate is more than so many times what noise makes of one,
-    pub(crate) const RATE: f64 = 2.0;
+    /// A joint moves if its velocity is more than so many times what noise makes of one,
+    pub(crate) const VELOCITY: f64 = 2.0;
 
     /// or its position goes further from its mean than so many times its noise.
     pub(crate) const POSITION: f64 = 3.0;
@@ -84,27 +84,27 @@ pub(crate) mod stretch {
     pub(crate) const FORGOTTEN: f64 = 1e-13;
 }
 
-/// `condition/reversals.rs`: Where the sign of a joint's rate says little: near its reversals, and
-/// while it hardly moves; and functions of a rate that pass the filter as the torque does.
+/// `condition/reversals.rs`: Where the sign of a joint's velocity says little: near its reversals,
+/// and while it hardly moves; and functions of a velocity that pass the filter as the torque does.
 pub(crate) mod reversals {
     /// Samples that are left within which a decimated one has nearly all of its weight.
     pub(crate) const WEIGHED: f64 = 2.5;
 
-    /// Deviations of a rate's noise below which its sign is not known, and steps of its encoder in
-    /// a period of the filter's cutoff.
+    /// Deviations of a velocity's noise below which its sign is not known, and steps of its encoder
+    /// in a period of the filter's cutoff.
     pub(crate) const NOISE: f64 = 3.0;
 
     /// See [`NOISE`].
     pub(crate) const STEPS: f64 = 2.0;
 
-    /// The share of its usual rate, root of mean square, below which a joint stands still.
+    /// The share of its usual velocity, root of mean square, below which a joint stands still.
     pub(crate) const STILL: f64 = 1e-4;
 }
 
 /// `contact_forces.rs`: Robots that are pushed from outside: what contact forces, and wrenches on
 /// links, do to each equation (thesis 3.3, 5.2.1).
 pub(crate) mod contact_forces {
-    /// Half the distance of differences [rad, m]: of order 4, so that rounding and what is left of
+    /// Half the distance of differences [rad, m]: of order 4, so that rounding and the rest of
     /// the Taylor series are both about 1e-13.
     pub(crate) const DIFFERENCE: f64 = 1e-3;
 }
@@ -116,7 +116,7 @@ pub(crate) mod check {
     pub(crate) const SLOWEST_STEP_S: f64 = 0.1;
 
     /// A step of the time below which it hardly counts seconds: a millisecond in days is 1e-8, and
-    /// no loop of a drive has a rate of a megahertz.
+    /// no loop of a drive has a sampling rate of a megahertz.
     pub(crate) const FASTEST_STEP_S: f64 = 1e-6;
 
     /// Seconds in an hour.
@@ -138,7 +138,7 @@ pub(crate) mod check {
     /// Two signals that are not one.
     pub(crate) const OTHER: f64 = 0.7;
 
-    /// The share of its samples in which a torque has its extreme value to be told as one that
+    /// The share of its samples in which a torque has its extreme value to be reported as one that
     /// saturates.
     pub(crate) const SATURATED: f64 = 2e-3;
 
@@ -179,7 +179,7 @@ pub(crate) mod jumps {
 /// `log/mod.rs`: Logs of measurements: read, mapped to our columns, checked, brought to equal
 /// distances.
 pub(crate) mod log {
-    /// What no position, rate, torque or force of a robot reaches, in its SI unit.
+    /// What no position, velocity, torque or force of a robot reaches, in its SI unit.
     pub(crate) const LARGEST: f64 = 1e12;
 
     /// The same of times \[s\], which may count from any beginning, in any unit.

@@ -50,8 +50,8 @@ impl Butterworth {
     }
 
     /// The filter of an order (of one pass; two passes have twice the slope) whose single pass
-    /// halves the power at `cutoff_hz`. None if the cutoff is not between 0 and half the rate of
-    /// sampling, or the order not from 1 to 10.
+    /// halves the power at `cutoff_hz`. None if the cutoff is not between 0 and half the
+    /// sampling rate, or the order not from 1 to 10.
     pub fn new(order: usize, cutoff_hz: f64, step_s: f64) -> Option<Self> {
         let relative = cutoff_hz * step_s;
         if !(relative > 0.0 && relative < 0.5 && (1..=10).contains(&order)) {

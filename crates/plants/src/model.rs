@@ -187,7 +187,7 @@ pub(super) fn baked(robot: &Robot, overrides: &[Override]) -> Result<Robot, Erro
         robot.parameters[id].default = Some(robot.dag.constant(exact));
     }
     let robot = bake(&robot)?;
-    // the model's own values have been checked
+    // the nominal parameters have been checked
     if !overrides.is_empty() {
         robot.links.values().try_for_each(|link| check_signs(&robot, link))?;
     }

@@ -177,7 +177,7 @@ impl RegressionModel {
         &self.to_listed
     }
 
-    /// phi of the model's own values; none if the model lacks one.
+    /// phi of the nominal parameters; none if the model lacks one.
     pub fn model_axes(&self) -> Option<Vec<f64>> {
         self.axes.iter().map(|parameter| parameter.value).collect()
     }

@@ -52,7 +52,7 @@ impl TwoStagePage<'_> {
     fn lead(&self) -> String {
         let mut text = format!(
             "{} springs and their motors are identified first, then {} base parameters of the \
-             load, from the torques that the springs pass on. They leave {} of these torques",
+             load, from the torques that the springs pass on. The residual is {} of these torques",
             self.springs.len(),
             self.parameters.len(),
             percent(self.train.relative),
@@ -98,8 +98,8 @@ impl TwoStagePage<'_> {
             ];
             Row { cells, is_marked: false }
         });
-        let caption = "Springs and motors, each with its standard error; what is left of the \
-                       torque of each motor, less that of its inertia.";
+        let caption = "Springs and motors, each with its standard error; the residual of each \
+                       motor's torque, less that of its inertia.";
         let table = HtmlTable { caption: caption.to_owned(), columns, rows: rows.collect() };
         Section { heading: "Springs and motors".to_owned(), parts: vec![Part::Table(table)] }
     }

@@ -35,7 +35,7 @@ impl fmt::Display for Breakdown {
                     "the base has rolled by a quarter turn, where its coordinates are singular"
                 )
             }
-            Self::NotFinite => write!(f, "a torque or a rate is not finite"),
+            Self::NotFinite => write!(f, "a torque or a velocity is not finite"),
             Self::Contact(failure) => write!(f, "{failure}"),
             Self::Painleve => {
                 write!(f, "a slipping contact jams: no force obeys Coulomb's law (Painleve)")

@@ -84,7 +84,7 @@ pub(super) fn check(
     }
     let all = [&state.q, &state.qd, &state.motor, &state.motor_rate];
     if !all.into_iter().flatten().all(|entry| entry.is_finite()) {
-        return Err(StartError::Number("a position or rate of the initial state"));
+        return Err(StartError::Number("a position or velocity of the initial state"));
     }
     let roll = plant.model().singular_base_joint().map(|joint| state.q[joint]);
     if roll.is_some_and(|roll| quarter_turn_left(roll) <= 0.0) {

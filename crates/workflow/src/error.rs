@@ -256,7 +256,14 @@ impl Error {
             match log {
                 Ok(log) => right.push(log),
                 Err(Self(cause)) => match *cause {
-                    Cause::Logs(faults) => wrong.extend(faults),
+                    // a log may be given twice
+                    Cause::Logs(faults) => {
+                        for one in faults {
+                            if !wrong.contains(&one) {
+                                wrong.push(one);
+                            }
+                        }
+                    }
                     cause => return Err(cause.into()),
                 },
             }

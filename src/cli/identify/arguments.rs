@@ -21,9 +21,10 @@ use std::path::PathBuf;
 /// are any), or MCAP or the folder of a ROS 2 bag with sensor_msgs/JointState
 /// (docs/reference/logs.md); --columns maps those of other logs. Positions and torques pass one
 /// zero-phase filter, torques and regressor one decimator. Base parameters are exact; what the
-/// motion does not show keeps the model's value and is said to. Exits with 1 if what is found
-/// leaves as much of the torques as nothing would, or, of the torque of a joint that moves, nearly
-/// all, or a third that is no noise; or if a log of --validate says the same as one of --train.
+/// motion does not show keeps its nominal value, and is marked. Exits with 1 if what is found
+/// explains nothing of the torques, or hardly anything of the torque of a joint that moves, or if
+/// a third of such a torque is a residual that is no noise, or if a log of --validate says the
+/// same as one of --train.
 #[derive(Debug, Default, Args)]
 #[command(after_help = "\
 Examples:
@@ -71,14 +72,14 @@ pub(crate) struct Arguments {
     #[arg(long = "static", value_name = "FILE", conflicts_with_all = ["svg", "html", "motion_svg",
         "output", "validate"])]
     pub(super) statics: Option<PathBuf>,
-    /// Coulomb friction as the sign of the rate of a joint, or as tanh(rate / RATE), with which
-    /// logs are then simulated too [rad/s, m/s]; 0.01 if no RATE is given
-    #[arg(long, value_name = "sign|tanh[:RATE]", value_parser = friction, default_value = "sign")]
+    /// Coulomb friction as the sign of a joint's velocity, or as tanh(velocity / SLOW), with which
+    /// logs are then simulated too [rad/s, m/s]; 0.01 if no SLOW is given
+    #[arg(long, value_name = "sign|tanh[:SLOW]", value_parser = friction, default_value = "sign")]
     pub(super) friction: CoulombLaw,
     /// Leave out the rows of a joint near reversals, within the filter's time, where they bias its
-    /// Coulomb friction (biasing), or none (off), or those in which it is slower than a rate
-    /// [rad/s, m/s] or turns round; noise is three times what the steps of its encoder make of one
-    #[arg(long, value_name = "biasing|off|RATE|noise", value_parser = slow,
+    /// Coulomb friction (biasing), or none (off), or those in which it is slower than a velocity
+    /// [rad/s, m/s] or reverses; noise is three times what the steps of its encoder make of one
+    #[arg(long, value_name = "biasing|off|VELOCITY|noise", value_parser = slow,
         default_value = "biasing")]
     pub(super) skip_slow: SlowRows,
     /// How parameters are estimated
@@ -124,7 +125,7 @@ pub(crate) struct Arguments {
     /// at equal distances. Its head is identified as any log is, and says how the rest is read
     #[arg(long, conflicts_with_all = ["two_stage", "statics", "controller", "motion_svg"])]
     pub(super) long: bool,
-    /// Rows of the head of a log that is read piece by piece; 524288 if nothing is said
+    /// Rows of the head of a log that is read piece by piece; 524288 by default
     #[arg(long, value_name = "ROWS", value_parser = clap::value_parser!(u32).range(1000..))]
     pub(super) head: Option<u32>,
     /// Write the model with the identified values; - is standard output
@@ -166,7 +167,7 @@ fn slow(text: &str) -> Result<SlowRows, String> {
         text => {
             let below = rate(text).map(SlowRows::Below);
             below.ok_or_else(|| {
-                "a rate from 1e-9 to 1000 rad/s or m/s, `biasing`, `noise`, or `off`".to_owned()
+                "a velocity from 1e-9 to 1000 rad/s or m/s, `biasing`, `noise`, or `off`".to_owned()
             })
         }
     }
@@ -179,10 +180,10 @@ fn friction(text: &str) -> Result<CoulombLaw, String> {
         Some(("tanh", width)) if rate(width).is_some() => {
             Ok(CoulombLaw::Tanh(rate(width).unwrap_or(STICTION_RATE)))
         }
-        _ => {
-            Err("`sign`, `tanh`, or `tanh:RATE` with a rate from 1e-9 to 1000 rad/s or m/s"
-                .to_owned())
-        }
+        _ => Err(
+            "`sign`, `tanh`, or `tanh:SLOW` with a velocity SLOW from 1e-9 to 1000 rad/s or m/s"
+                .to_owned(),
+        ),
     }
 }
 
@@ -220,23 +221,23 @@ pub(super) enum ErrorsName {
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(super) struct ConditionArguments {
     /// Cutoff of the zero-phase Butterworth filter [Hz], with the order of one pass if it is not 4;
-    /// or none. If nothing is said, a tenth of the rate of sampling, halved as long as noise of the
+    /// or none. By default, a tenth of the sampling rate, halved as long as noise of the
     /// positions biases parameters
     #[arg(long, value_name = "HZ[:ORDER]", value_parser = filter)]
     filter: Option<FilterChoice>,
-    /// Leave one sample in so many; if nothing is said, as the filter allows and 1200 are left
+    /// Leave one sample in so many; by default, as the filter allows and 1200 remain
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     decimate: Option<u32>,
     /// Average laps of this period [s], or of the one that is found
     #[arg(long, value_name = "PERIOD|found", value_parser = averaging)]
     average: Option<Averaging>,
-    /// Where rates and accelerations come from
+    /// Where velocities and accelerations come from
     #[arg(long, value_enum, default_value_t)]
-    rates: Rates,
+    derivatives: DerivativesName,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-enum Rates {
+enum DerivativesName {
     /// Differences of the filtered positions
     #[default]
     Differences,
@@ -335,9 +336,9 @@ impl ConditionArguments {
             filter: self.filter.unwrap_or_default(),
             decimation: self.decimate.map(|one_in| one_in as usize),
             averaging: self.average.unwrap_or_default(),
-            derivatives: match self.rates {
-                Rates::Differences => Derivatives::Central,
-                Rates::Logged => Derivatives::Logged,
+            derivatives: match self.derivatives {
+                DerivativesName::Differences => Derivatives::Central,
+                DerivativesName::Logged => Derivatives::Logged,
             },
         }
     }

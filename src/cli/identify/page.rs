@@ -18,7 +18,7 @@ pub(super) fn words(arguments: &Arguments) -> Words {
     [word(arguments.method), word(arguments.errors), arguments.seed.to_string()]
 }
 
-/// Those of an identification where nothing is said.
+/// Those of an identification by default.
 pub(super) fn default_words() -> Words {
     [word(MethodName::default()), word(ErrorsName::default()), "1".to_owned()]
 }

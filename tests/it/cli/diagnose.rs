@@ -142,7 +142,7 @@ fn the_page_tells_it(directory: &Directory) {
         "<svg",
         "<math",
         "knee, drag.csv",
-        "left of it after",
+        "of it remains",
         "Simulation gap",
         "Round 1",
         "Its odds are",

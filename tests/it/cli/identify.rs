@@ -64,7 +64,7 @@ fn what_is_wrong_is_said_and_exits_with_2() {
         ),
         (
             vec!["identify", "tulip_leg", "--train", "log.csv", "--filter", "9e9"],
-            "half the rate of sampling",
+            "at this sampling rate it must be below",
         ),
         (vec!["identify", "tulip_leg", "--train", "log.csv", "--average", "found"], "repeat"),
         (vec!["identify", "tulip_leg", "--train", "log.csv", "--keep", "mass"], "mass"),

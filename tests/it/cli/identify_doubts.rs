@@ -22,7 +22,7 @@ fn an_estimate_far_from_all_bodies_is_said() {
             let (code, text) = said(&directory, &["--train", "less.csv"]);
             assert_eq!(code, Some(i32::from(is_far)), "{seed} {less}: {text}");
             let words = text.replace('\n', " ");
-            let is_said = words.contains("standard errors from the nearest bodies that exist");
+            let is_said = words.contains("The parameters are not physically consistent");
             assert_eq!(is_said, is_far, "{seed} {less}: {text}");
         }
     }
@@ -121,7 +121,7 @@ fn doubts_are_said_beside_a_document() {
     }
 }
 
-/// A log that the model's own values miss by far is of another robot, whatever an estimate says.
+/// A log that the nominal parameters miss by far is of another robot, whatever an estimate says.
 #[test]
 fn values_that_are_far_off_are_said() {
     let directory = Directory::new("doubts-robot");

@@ -291,7 +291,7 @@ fn logged_rates_that_are_none_are_refused() {
     ];
     for (number, (column, is_good)) in cases.into_iter().enumerate() {
         write_rates("rates.csv", column);
-        let (code, text) = said(&directory, &["--train", "rates.csv", "--rates", "logged"]);
+        let (code, text) = said(&directory, &["--train", "rates.csv", "--derivatives", "logged"]);
         assert_eq!(code, Some(if is_good { 0 } else { 2 }), "{number}: {text}");
         assert_eq!(text.contains("`qdd_link2` is not the derivative"), !is_good, "{text}");
     }

@@ -10,7 +10,7 @@ const MOST_WORDS_OF_A_CELL: usize = 40;
 const MOST_WORDS_OF_A_GUIDE: usize = 1200;
 
 /// Every page below `docs`, in order.
-fn pages() -> Vec<PathBuf> {
+pub(super) fn pages() -> Vec<PathBuf> {
     let (mut pages, mut pending) = (Vec::new(), vec![root().join("docs")]);
     while let Some(folder) = pending.pop() {
         for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
@@ -26,7 +26,7 @@ fn pages() -> Vec<PathBuf> {
     pages
 }
 
-fn read(path: &Path) -> String {
+pub(super) fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 

@@ -14,6 +14,7 @@ mod python;
 mod reached;
 mod shipped;
 mod walls;
+mod words;
 
 use std::fs;
 use std::path::{Path, PathBuf};

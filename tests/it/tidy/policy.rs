@@ -49,7 +49,7 @@ fn entries(source: &str) -> Vec<Entry> {
 /// that a table which was read has.
 const TABLES: [(&str, &str, usize); 5] = [
     ("evidence", "Hypotheses and names", 20),
-    ("diagnose", "What is said of what was found", 20),
+    ("diagnose", "What is reported of what was found", 20),
     ("identify", "Estimates, doubts about logs", 20),
     ("measure", "Logs and filters", 20),
     ("excite", "Motion that excites", 5),

@@ -48,9 +48,9 @@ pub(super) fn known_symbols(robot: &Robot, dag: &Dag, notation: &Notation) -> St
 }
 
 fn joints(robot: &Robot) -> String {
-    let mut text = "Joint $j$ has the position $q_j$ [rad, m], the rate $\\dot{q}_j$, the \
-                    acceleration $\\ddot{q}_j$ and the torque or force $\\tau_j$ [N\\,m, N]:\n\
-                    \\begin{longtable}{rlll}\n$j$ & link & joint & carried by \\\\\n\\hline\n"
+    let mut text = "Joint $j$ has the position $q_j$ [rad, m], the velocity $\\dot{q}_j$, the \
+                    acceleration $\\ddot{q}_j$ and the torque or force $\\tau_j$ [N\\,m, \
+                    N]:\n\\begin{longtable}{rlll}\n$j$ & link & joint & carried by \\\\\n\\hline\n"
         .to_owned();
     for (row, (id, _)) in robot.joints().enumerate() {
         let link = &robot.links[id];

@@ -41,7 +41,7 @@ pub struct MisreadColumns {
     /// The log odds that they are.
     pub log_odds: f64,
     /// The share of the torques (roots of mean squares, of the joints whose share changes) that the
-    /// model's own values leave as the log is, and as it seems to be meant; none if there are none.
+    /// nominal parameters leave as the log is, and as it seems to be meant; none if there are none.
     pub left_by_model: Option<[f64; 2]>,
     /// The same of an estimate.
     pub left_by_estimate: [f64; 2],
@@ -79,7 +79,11 @@ impl fmt::Display for MisreadColumns {
         }
         self.misreading.describe(f, &self.joints, self.step_s)?;
         let [before, after] = self.left_by_estimate.map(share);
-        write!(f, ": of the torques an estimate leaves {before} as the log is, and {after} so")?;
+        write!(
+            f,
+            ": the residual of an estimate is {before} of the torques as the log is, and \
+                   {after} so"
+        )?;
         if let Some([before, after]) = self.left_by_model.map(|left| left.map(share)) {
             write!(f, "; {} {before} and {after}", self.values)?;
         }
@@ -204,7 +208,7 @@ fn misread_as_filtered(
             step_s,
             values: match values {
                 Some(_) => "the values that the other logs give",
-                None => "the model's own values",
+                None => "the nominal parameters",
             },
         });
     }

@@ -20,7 +20,7 @@ pub(super) const WEIGHING_ROUNDS: usize = 8;
 
 /// Log odds that a column is another one than it is taken for, before the log is looked at: 1 to
 /// 400, as of what is hardly ever met.
-pub(super) const MISREAD: f64 = -6.0;
+pub(super) const MISLABELLED: f64 = -6.0;
 
 /// How late signals are that are late \[s\]: a few periods of the loops that write them.
 pub(super) const LATE_S: f64 = 0.02;
@@ -65,6 +65,6 @@ pub(super) const HALVINGS: usize = 2;
 /// See [`HALVINGS`].
 pub(super) const HALVED_SAMPLES: usize = 200_000;
 
-/// The least share of its samples in which the sign of a joint's rate must be known for the others
-/// to be left out.
+/// The least share of its samples in which the sign of a joint's velocity must be known for the
+/// others to be left out.
 pub(super) const SIGNED: f64 = 0.1;

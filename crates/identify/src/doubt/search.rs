@@ -255,7 +255,7 @@ impl Found {
         let of_estimate = |one: &Weighed| one.of_estimate().log_evidence;
         Self {
             misreading,
-            log_odds: policy::MISREAD + gain + cost,
+            log_odds: policy::MISLABELLED + gain + cost,
             by_estimate: of_estimate(after) - of_estimate(before) + cost,
             is_near: after.all.len() > 1
                 && after.all[1..].iter().all(|one| one.log_evidence < after.all[0].log_evidence),

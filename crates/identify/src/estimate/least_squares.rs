@@ -31,8 +31,8 @@ const ROUNDS_OF_SCALES: usize = 10;
 /// those that the filter's correlation makes, less what chance may show less of them.
 const ENOUGH_PARTS: usize = 48;
 
-const NOTHING_LEFT: &str = "no joint is ever as fast as `options.slow` says: nothing is left of \
-                            the logs\n  hint: a lower rate, or `options.slow=biasing`, which is \
+const NOTHING_LEFT: &str = "no joint is ever as fast as `options.slow` asks: no sample of the logs \
+                            remains\n  hint: a lower velocity, or `options.slow=biasing`, which is \
                             the default";
 
 /// How base parameters are estimated.

@@ -1,5 +1,5 @@
 //! Columns that are other ones than they are taken for: told on several robots, and nothing told
-//! of good logs, whatever the model's own values.
+//! of good logs, whatever the nominal parameters.
 
 use super::estimate::{Experiment, bare};
 use denavit_codegen::regressor::RegressorOptions;
@@ -91,7 +91,7 @@ fn misread(log: &Conditioned, how: Misreading) -> Conditioned {
     log
 }
 
-/// Neither with the model's own values but for friction, nor with masses that are 40 % off.
+/// Neither with the nominal parameters but for friction, nor with masses that are 40 % off.
 #[test]
 fn nothing_is_told_of_good_logs() {
     for name in ROBOTS {

@@ -41,12 +41,17 @@ pub(super) fn notes(numbers: &Numbers, is_urdf: bool) -> Vec<String> {
             || drive.return_spring.is_some()
     });
     if !sprung.is_empty() {
-        notes.push(format!("these have springs that cannot be said: {}", listed(&sprung)));
+        notes.push(format!(
+            "these have springs that the format has no place for: {}",
+            listed(&sprung)
+        ));
     }
     let offsets = with(&|id| robot.links[id].drive.is_some_and(|drive| drive.offset.is_some()));
     if !offsets.is_empty() {
-        notes
-            .push(format!("these have constant torques that cannot be said: {}", listed(&offsets)));
+        notes.push(format!(
+            "these have constant torques that the format has no place for: {}",
+            listed(&offsets)
+        ));
     }
     let massless = with(&|id| {
         let body = numbers.body(id);

@@ -29,7 +29,7 @@ pub struct Laps {
 const REACH: usize = 3;
 
 /// A signal between its samples: the polynomial of fifth degree through the six next to a place,
-/// of which at least three must be on either side. Below a tenth of the rate of sampling, where the
+/// of which at least three must be on either side. Below a tenth of the sampling rate, where the
 /// filter cuts, it is off by less than 0.1 %.
 fn between(signal: &[f64], place: f64) -> f64 {
     let first = place.floor();

@@ -23,7 +23,7 @@ use crate::error::{Cause, Error};
 use crate::{JointIndex, SampleIndex};
 use std::ops::Range;
 
-/// Where rates and accelerations come from.
+/// Where velocities and accelerations come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Derivatives {
     /// Central differences of sixth order of the filtered positions.
@@ -59,7 +59,7 @@ pub enum Averaging {
 pub struct Conditioning {
     /// The filter of positions and torques; none leaves them as they are.
     pub filter: Option<Filter>,
-    /// Where rates and accelerations come from.
+    /// Where velocities and accelerations come from.
     pub derivatives: Derivatives,
     /// One sample in so many is left; 0 and 1 leave all.
     pub decimation: usize,
@@ -335,9 +335,9 @@ impl Conditioned {
 
 fn lawful(filter: Filter, step_s: f64) -> Result<Butterworth, Cause> {
     let Filter { order, cutoff_hz } = filter;
-    let nyquist_hz = 0.5 / step_s;
+    let limit_hz = 0.5 / step_s;
     let found = Butterworth::new(order, cutoff_hz, step_s);
-    found.ok_or(Cause::Cutoff { cutoff_hz, nyquist_hz })
+    found.ok_or(Cause::Cutoff { cutoff_hz, limit_hz })
 }
 
 /// The first difference of sixth order, per sample.

@@ -2,7 +2,7 @@
 
 use super::{Conditioned, Piece, rate};
 use crate::log::JointSignals;
-use crate::policy::noise::{GAINS, POSITION, RATE, ROUNDING, WHITE};
+use crate::policy::noise::{GAINS, POSITION, ROUNDING, VELOCITY, WHITE};
 use denavit_numerics::Random;
 
 /// The order of the differences that noise is read from: of smooth signals they are next to
@@ -72,7 +72,7 @@ impl Conditioned {
                 None => rate(q, k) / self.step_s,
             });
             let rates = rates.map(|rate| rate * rate).sum::<f64>();
-            let is_slow = (rates / samples).sqrt() <= RATE * of_rate * noise;
+            let is_slow = (rates / samples).sqrt() <= VELOCITY * of_rate * noise;
             let is_resting = is_slow && (spread / samples).sqrt() <= POSITION * noise;
             self.resting.push(is_resting);
             if is_resting {

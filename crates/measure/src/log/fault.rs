@@ -334,7 +334,7 @@ impl fmt::Display for Suspicion {
             Self::RateScale { column, ratio } => write!(
                 f,
                 "`{column}` is {ratio:.4} times the derivative of its position\n  hint: time, \
-                 position or rate is in another unit; `logs.columns` can scale each"
+                 position or velocity is in another unit; `logs.columns` can scale each"
             )?,
             Self::NotTheRate { column, correlation } => write!(
                 f,
@@ -343,7 +343,7 @@ impl fmt::Display for Suspicion {
             )?,
             Self::Swapped { joint, other } => write!(
                 f,
-                "the position of `{joint}` fits the rate of `{other}`: are the two swapped?\n  \
+                "the position of `{joint}` fits the velocity of `{other}`: are the two swapped?\n  \
                  hint: `logs.columns` can name them the other way round"
             )?,
             Self::ConstantTorque { column } => {

@@ -1,7 +1,9 @@
 //! Which column of a foreign log is which of ours.
 
+use super::mapping_fault::MappingCause;
 use crate::error::{Cause, Error};
-use serde::Deserialize;
+use denavit_codegen::model::json::Value;
+use denavit_codegen::model::{Node, Report, read_document};
 use std::collections::BTreeMap;
 
 /// Where one of our columns stands in a log, and how its numbers become ours:
@@ -48,58 +50,19 @@ pub(super) enum Mapped {
 /// What stands for a joint, a contact or a link in names and sources.
 const SUBJECTS: [&str; 3] = ["{joint}", "{contact}", "{link}"];
 
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Entry {
-    Name(String),
-    Full(Full),
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Full {
-    column: Option<String>,
-    scale: Option<f64>,
-    offset: Option<f64>,
-}
-
 impl ColumnMapping {
     /// Reads a mapping from JSON. `file` is its name, for messages alone.
+    ///
+    /// # Errors
+    ///
+    /// All that is wrong with the file, each with its place.
     pub fn from_json(file: &str, source: &[u8]) -> Result<Self, Error> {
-        let error = |at, cause| Error::from(Cause::Mapping { file: file.to_owned(), at, cause });
-        let raw: BTreeMap<String, Option<Entry>> =
-            serde_json::from_slice(source).map_err(|problem| {
-                let text = problem.to_string();
-                let cause = text.find(" at line").map_or(text.as_str(), |end| &text[..end]);
-                let cause = match problem.classify() {
-                    serde_json::error::Category::Data => {
-                        format!("an entry is the name of a column, an object, or null: {cause}")
-                    }
-                    _ => format!("no JSON: {cause}"),
-                };
-                error((problem.line(), problem.column()), cause)
-            })?;
-        let mut sources = BTreeMap::new();
-        for (name, entry) in raw {
-            let Some(entry) = entry else {
-                sources.insert(name, None);
-                continue;
-            };
-            let source = match entry {
-                Entry::Name(column) => ColumnSource::of(&column),
-                Entry::Full(Full { column, scale, offset }) => ColumnSource {
-                    column: column.unwrap_or_else(|| name.clone()),
-                    scale: scale.unwrap_or(1.0),
-                    offset: offset.unwrap_or(0.0),
-                },
-            };
-            if source.scale == 0.0 || !source.scale.is_finite() || !source.offset.is_finite() {
-                let cause = format!("`{name}`: the scale must be a finite number other than 0");
-                return Err(error((1, 1), cause));
-            }
-            sources.insert(name, Some(source));
-        }
-        Ok(Self { sources })
+        let read = read_document(file, source, |root, report| {
+            let entries = root.members(report)?.all();
+            let sources = entries.map(|(name, node)| (name.to_owned(), entry(name, node, report)));
+            Some(Self { sources: sources.collect() })
+        });
+        read.map_err(|faults| Cause::Mapping(faults).into())
     }
 
     /// Adds or replaces the source of a column.
@@ -141,5 +104,33 @@ impl ColumnMapping {
     /// The names that are mapped.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.sources.keys().map(String::as_str)
+    }
+}
+
+/// What an entry says of one of our columns; nothing if it is left out, or wrong.
+fn entry(name: &str, node: Node<'_>, report: &mut Report<MappingCause>) -> Option<ColumnSource> {
+    match &node.0.value {
+        Value::Null => None,
+        Value::Text(column) => Some(ColumnSource::of(column)),
+        Value::Object(_) => {
+            let fields = node.fields(&["column", "scale", "offset"], report)?;
+            let column = fields.text("column", report).unwrap_or(name);
+            let mut number = |key: &str, without: f64| {
+                let given = fields.get(key).and_then(|node| {
+                    let finite = |text: &str| text.parse().ok().filter(|n: &f64| n.is_finite());
+                    node.number(finite, report)
+                });
+                given.unwrap_or(without)
+            };
+            let (scale, offset) = (number("scale", 1.0), number("offset", 0.0));
+            if scale == 0.0 {
+                report.push(fields.place("scale"), MappingCause::NoScale);
+            }
+            Some(ColumnSource { column: column.to_owned(), scale, offset })
+        }
+        other => {
+            report.push(node.at(), MappingCause::NoEntry(other.kind()));
+            None
+        }
     }
 }

@@ -11,6 +11,7 @@ mod check;
 mod fault;
 mod jumps;
 mod mapping;
+mod mapping_fault;
 mod repair;
 mod wanted;
 
@@ -18,6 +19,7 @@ use crate::error::Error;
 use crate::policy::log::{LARGEST, LARGEST_TIME};
 pub use fault::{LogFault, LogFaults, LogRemark, Suspicion};
 pub use mapping::{ColumnMapping, ColumnSource};
+pub(crate) use mapping_fault::MappingCause;
 
 pub use denavit_logs::{FileFault, FileRemark, Place};
 

@@ -180,7 +180,7 @@ fn gaps(out: &mut String, shown: &Diagnosed) -> fmt::Result {
         table.push(row(name, &of_place));
     }
     table.push(row("all", &|gap| Some(gap.all)));
-    writeln!(out, "\ngap: what is left of the torques, over the torques\n{table}")?;
+    writeln!(out, "\ntorque mismatch: size of the residual over that of the torque\n{table}")?;
     Ok(())
 }
 
@@ -209,8 +209,8 @@ fn motion(out: &mut String, shown: &Diagnosed) -> fmt::Result {
         table.push(row(&described.name, &of_joint));
     }
     table.push(row("all", &|gap| Some(gap.all)));
-    let what = "simulation gap: errors of positions in windows of 0.2 s under measured torques, \
-                over how far joints went";
+    let what = "simulation mismatch: errors of positions in windows of 0.2 s under measured \
+                torques, over how far joints went";
     writeln!(out, "{what}\n{table}")
 }
 

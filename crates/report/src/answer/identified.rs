@@ -97,13 +97,13 @@ pub(super) fn parameter_table(parameters: &[IdentifiedParameter]) -> Table {
     table.without_empty_columns()
 }
 
-/// Says if the bodies nearest to an estimate are so far from it, in standard errors, that it
-/// belongs to none.
+/// Says how far the nearest physically consistent parameters are from an estimate, in standard
+/// errors, where it is not so itself.
 pub(super) fn write_nearest(out: &mut String, distance: f64) -> fmt::Result {
     if distance > 1.0 {
         let text = format!(
-            "The estimate belongs to no bodies that exist: the nearest ones are {} standard errors \
-             away, over all parameters. A model file gets those.",
+            "The estimate is not physically consistent: the nearest one that is lies {} standard \
+             errors away, over all parameters. A model file gets that.",
             short(distance)
         );
         writeln!(out, "\n{}", paragraph("", "", &text))?;
@@ -146,7 +146,7 @@ fn write_residuals(out: &mut String, shown: &Identified) -> fmt::Result {
     table.push(vec!["all".to_owned(), percent(found.train.relative), all]);
     write!(out, "{}", table.without_empty_columns())?;
     let before = match found.before {
-        Some(before) => format!("{} of the torque left", percent(before)),
+        Some(before) => format!("a residual of {} of the torque", percent(before)),
         None => {
             let without = found.parameters.iter().filter(|one| one.model_value.is_none());
             let names: Vec<&str> = without.map(|one| one.name.as_str()).collect();
@@ -156,7 +156,7 @@ fn write_residuals(out: &mut String, shown: &Identified) -> fmt::Result {
     writeln!(
         out,
         "\n{}",
-        paragraph("", "", &format!("before, with the model's values: {before}"))
+        paragraph("", "", &format!("before, with the nominal parameters: {before}"))
     )?;
     Ok(())
 }
@@ -165,8 +165,15 @@ fn write_simulation(out: &mut String, gap: &SimulationGap) -> fmt::Result {
     let [before, after] = [&gap.before, &gap.after].map(|made| made.as_ref().ok());
     if gap.kind().is_some() {
         writeln!(out, "\n{}", paragraph("", "", &format!("Logs {}:", gap.method())))?;
-        let names =
-            ["joint", "position before", "after", "rate before", "after", "torque before", "after"];
+        let names = [
+            "joint",
+            "position before",
+            "after",
+            "velocity before",
+            "after",
+            "torque before",
+            "after",
+        ];
         let align = |at: usize| if at == 0 { Align::Left } else { Align::Right };
         let columns: Vec<(&str, Align)> =
             names.into_iter().enumerate().map(|(at, name)| (name, align(at))).collect();

@@ -41,7 +41,7 @@ fn write(out: &mut String, found: &TwoStageFound) -> fmt::Result {
     }
     writeln!(out, "{table}")?;
     writeln!(out, "{}", parameter_table(&found.parameters))?;
-    let mut table = columns(&["joint", "torque", "residual", "left of other logs"]);
+    let mut table = columns(&["joint", "torque", "residual", "held out"]);
     for (joint, [missed, size]) in found.model.joints.iter().zip(&found.stages.residuals) {
         let other = found.left_of(&joint.name).map(percent).unwrap_or_default();
         table.push(vec![joint.name.clone(), short(*size), short(*missed), other]);

@@ -76,8 +76,8 @@ fn torque_chart(joint: &str, curve: &Curve) -> Chart {
         ChartCurve::new("with the effects", Look::Computed, computed(&curve.after)),
     ];
     let left = vec![
-        ChartCurve::new("left before", Look::Before, curve.before.clone()),
-        ChartCurve::new("left with the effects", Look::Residual, curve.after.clone()),
+        ChartCurve::new("residual before", Look::Before, curve.before.clone()),
+        ChartCurve::new("residual with the effects", Look::Residual, curve.after.clone()),
     ];
     Chart {
         name: format!("{}, {}", joint.replace('_', " "), curve.file),
@@ -87,7 +87,7 @@ fn torque_chart(joint: &str, curve: &Curve) -> Chart {
         x: curve.t_s.clone(),
         panels: vec![
             Panel::new("torque [N m, N]", 190, torques),
-            Panel::new("left [N m, N]", 100, left),
+            Panel::new("residual [N m, N]", 100, left),
         ],
         windows: windows(curve).iter().map(|one| [one.from_s, one.to_s]).collect(),
     }
@@ -157,13 +157,13 @@ impl DiagnosisPage<'_> {
         let cells = [vec![Cell::text("all"), self.bars(&all)], of(&all)].concat();
         rows.push(Row { cells, is_marked: true });
         let caption =
-            "What is left of the torques, over the torques (root of mean square), before \
-                       and after the effects, and what noise alone leaves. All: root of mean \
-                       square over the joints and springs. Bars are of the held-out logs."
+            "Torque mismatch: size of the residual over that of the torque (root of mean square), \
+                       before and after the effects, and of noise alone. All: root of mean square \
+                       over the joints and springs. Bars are of the held-out logs."
                 .to_owned();
         let mut parts = vec![Part::Table(HtmlTable { caption, columns, rows })];
         parts.extend(self.in_motion());
-        Section { heading: "Gap".to_owned(), parts }
+        Section { heading: "Torque mismatch".to_owned(), parts }
     }
 
     /// What is left of held-out logs before, after and of noise, beside that of other joints.
@@ -200,8 +200,9 @@ impl DiagnosisPage<'_> {
         };
         let mut rows: Vec<Row> = self.joints.iter().enumerate().map(of_joint).collect();
         rows.push(Row { cells: row("all", &|gap| Some(gap.all)), is_marked: true });
-        let caption = "Simulation gap: errors of positions in short windows from measured states \
-                       under measured torques, over how far joints went (root of mean square)."
+        let caption = "Simulation mismatch: errors of positions in short windows from measured \
+                       states under measured torques, over how far joints went (root of mean \
+                       square)."
             .to_owned();
         Some(Part::Table(HtmlTable { caption, columns, rows }))
     }
@@ -225,15 +226,15 @@ impl DiagnosisPage<'_> {
 
     fn torques(&self) -> Section {
         let shown = self.torque_curves();
-        let text = "Held-out logs, the joints that leave most: torques that were measured, and \
-                    those of the nominal model, its own numbers estimated again, without and with \
-                    the effects; below, what both leave. All through one filter."
+        let text = "Held-out logs, the joints with the largest residuals: torques that were \
+                    measured, and those of the model, its parameters estimated again, without and \
+                    with the effects; below, the residuals of both. All through one filter."
             .to_owned();
         let mut parts = vec![Part::Paragraph { text }];
         parts.extend(shown.iter().map(|(joint, curve)| Part::Chart(torque_chart(joint, curve))));
         parts.extend(windows_table(&shown));
         let svg = diagnosis_picture(&self.model.replace('_', " "), &shown);
-        let caption = "Where the nominal model leaves most.".to_owned();
+        let caption = "Where the residual of the nominal model is largest.".to_owned();
         let summary = "As a picture for papers".to_owned();
         parts.push(Part::Folded { summary, parts: vec![Part::Figure { svg, caption }] });
         Section { heading: "Torques".to_owned(), parts }
@@ -252,9 +253,9 @@ impl DiagnosisPage<'_> {
         let own = &self.candidates[one.candidate];
         let doubt = if one.is_named { "New" } else { "Nearest to something without a name" };
         let closes = match closes(one) {
-            Some(share) => format!("It closes {share} of the gap."),
-            None => "Without it the other terms, estimated again, leave no more of the held-out \
-                     logs: what speaks for it are its odds."
+            Some(share) => format!("It closes {share} of the torque mismatch."),
+            None => "Without it the other terms, estimated again, explain the held-out logs as \
+                     well: what speaks for it are its odds."
                 .to_owned(),
         };
         let (title, at, odds) = (&own.title, &own.at, odds(one.log_odds));
@@ -323,7 +324,7 @@ impl DiagnosisPage<'_> {
             ("state of motion", false),
             ("share of time", true),
             ("share of squares before", true),
-            ("left of it after", true),
+            ("of it remains", true),
         ]);
         let mut rows = Vec::new();
         for one in self.worst() {
@@ -347,9 +348,10 @@ impl DiagnosisPage<'_> {
         let sentences = self.found.before.iter().filter(|one| one.share > 0.05);
         let mut parts: Vec<Part> =
             sentences.map(|one| Part::Paragraph { text: one.sentence() + "." }).collect();
-        let caption = "Squares of what is left of a joint's torque in the logs for training, by \
-                       states of its motion, which overlap. Marked: more than their time has."
-            .to_owned();
+        let caption =
+            "Squared residual of a joint's torque in the logs for training, by states of \
+                       its motion, which overlap. Marked: more than their time has."
+                .to_owned();
         parts.push(Part::Table(HtmlTable { caption, columns, rows }));
         Section { heading: "Where".to_owned(), parts }
     }

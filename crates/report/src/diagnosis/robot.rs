@@ -8,8 +8,8 @@ use super::{DiagnosisPage, rough};
 fn signs([most_nm, most_n]: [f64; 2]) -> String {
     let turned = (most_nm > 0.0).then(|| {
         format!(
-            "Arcs about the joints are what models leave of their torques: three quarters of a \
-             turn are {} N m. ",
+            "Arcs about the joints are the residuals of models: three quarters of a turn are {} N \
+             m. ",
             rough(most_nm)
         )
     });
@@ -40,7 +40,7 @@ impl DiagnosisPage<'_> {
         }
         if let Some(worst) = found.before.first().filter(|_| marks.is_empty()) {
             scene = scene.marking(&[worst.joint.as_str()], false);
-            let word = format!("{}: most of what is left", worst.joint);
+            let word = format!("{}: the largest residual", worst.joint);
             marks.push(SceneMark::marked(word));
         }
         let name = format!("{} along {}, in three dimensions", self.model, log.file);
@@ -50,7 +50,7 @@ impl DiagnosisPage<'_> {
             log.file,
             signs(scene.most_left(&motion))
         );
-        let words = ["torque left by the model as it was given", "with the effects"];
+        let words = ["residual of the model as it was given", "with the effects"];
         marks.extend(SceneMark::left(words));
         let played = scene.moving([name, caption], marks, &motion)?;
         let parts = vec![Part::Replay(played)];

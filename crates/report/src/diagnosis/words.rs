@@ -70,17 +70,17 @@ impl<'a> Rest<'a> {
 fn nothing_missing(held_out: &Gaps, rest: Rest<'_>) -> String {
     let Gaps { after, floor, .. } = held_out;
     if beyond_noise(held_out).is_none() {
-        return "Nothing is missing: what is left is noise.".to_owned();
+        return "Nothing is missing: the residual is noise.".to_owned();
     }
     let what = match rest {
         Rest::Physics(_) => "and it looks like physics without a name",
         Rest::Disturbance(_) => "and it looks like a disturbance",
-        Rest::Reversals => "most of it where drives turn around or rest",
+        Rest::Reversals => "most of it at velocity reversals and rests",
     };
     let [left, noise] = [after.all, floor.all].map(percent);
     format!(
-        "Nothing of the catalogue is missing: {left} of the torque is left where noise alone \
-         leaves {noise}, {what}."
+        "Nothing of the catalogue is missing: the torque mismatch is {left} where noise alone \
+         makes {noise}, {what}."
     )
 }
 
@@ -100,8 +100,8 @@ pub fn verdict_paragraph(found: &Diagnosis, candidates: &[Candidate]) -> String 
 pub(super) fn reasons(found: &Diagnosis) -> String {
     let Gaps { before, after, floor } = &found.held_out;
     let mut text = format!(
-        "On held-out logs the gap of the torques was {}, with what was found it is {}, and noise \
-         alone leaves {}",
+        "On held-out logs the torque mismatch was {}, with what was found it is {}, and noise \
+         alone makes {}",
         percent(before.all),
         percent(after.all),
         percent(floor.all)
@@ -127,7 +127,7 @@ fn looks_like(found: &Diagnosis) -> Option<String> {
         return None;
     }
     let explains = |one: &Structure| {
-        format!("explains {} of the squares that {} leaves", percent(one.share), one.at)
+        format!("explains {} of the squared residual of {}", percent(one.share), one.at)
     };
     let what = match Rest::of(found) {
         Rest::Physics(one) => format!("physics: a formula of the motion {}", explains(one)),
@@ -169,13 +169,13 @@ mod tests {
     fn nothing_missing_says_so_of_noise_alone() {
         let said = |after, floor, rest| nothing_missing(&gaps(after, floor), rest);
         let disturbance = Rest::Disturbance(None);
-        assert_eq!(said(0.0021, 0.0017, disturbance), "Nothing is missing: what is left is noise.");
-        let disturbed = "Nothing of the catalogue is missing: 2.11 % of the torque is left where \
-                         noise alone leaves 0.17 %, and it looks like a disturbance.";
+        assert_eq!(said(0.0021, 0.0017, disturbance), "Nothing is missing: the residual is noise.");
+        let disturbed = "Nothing of the catalogue is missing: the torque mismatch is 2.11 % where \
+                         noise alone makes 0.17 %, and it looks like a disturbance.";
         assert_eq!(said(0.0211, 0.0017, disturbance), disturbed);
         assert!(
             said(0.0211, 0.0017, Rest::Reversals)
-                .ends_with("most of it where drives turn around or rest.")
+                .ends_with("most of it at velocity reversals and rests.")
         );
         assert!(said(0.004, 0.0, disturbance).contains("0.40 % of the torque"));
     }

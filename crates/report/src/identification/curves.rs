@@ -57,7 +57,7 @@ fn torque(joint: &JointResidual, samples: usize) -> Chart {
         false => String::new(),
     };
     Chart {
-        name: format!("{}: {} left", joint.name.replace('_', " "), percent(joint.relative)),
+        name: format!("{}: residual {}", joint.name.replace('_', " "), percent(joint.relative)),
         caption,
         group: "torques",
         over: TIME,
@@ -82,7 +82,7 @@ pub(super) fn motion(forward: &Forward) -> impl Iterator<Item = Chart> + '_ {
         let off = vec![ChartCurve::new("difference", Look::Residual, off)];
         let left = percent(compared.relative);
         Chart {
-            name: format!("{}, {what}: {left} left", joint.replace('_', " ")),
+            name: format!("{}, {what}: residual {left}", joint.replace('_', " ")),
             caption: String::new(),
             group: "motion",
             over: TIME,

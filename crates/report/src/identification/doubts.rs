@@ -54,9 +54,9 @@ fn bias(found: &Identification) -> Option<String> {
         let short = if found.is_short() { "The logs are too short for it: " } else { "" };
         return Some(format!(
             "{short}Noise of the positions makes up to {:.0} % of what the motion shows of the \
-             parameters. How far they are off cannot be told, nor whether columns are other ones \
-             than they are taken for. A filter with a lower cutoff (`conditions.filter`) has less \
-             of it; so has a longer or faster motion, or one of all joints at once.",
+             parameters. How far they are off is not known, nor whether columns are mislabelled. A \
+             filter with a lower cutoff (`conditions.filter`) has less of it; so has a longer or \
+             faster motion, or one of all joints at once.",
             100.0 * found.estimate.noise_share
         ));
     }
@@ -106,14 +106,14 @@ fn rows_left_out(rows: &[LeftOutRows]) -> Option<String> {
     let of = |one: &LeftOutRows| {
         let left = 100.0 * one.left;
         let LeftOutRows { joint, samples, of, .. } = one;
-        format!("{samples} of {of} samples of {joint}, whose others leave {left:.2} %")
+        format!("{samples} of {of} samples of {joint}, whose others have a residual of {left:.2} %")
     };
     let listed: Vec<String> = rows.iter().map(of).collect();
     (!listed.is_empty()).then(|| {
         format!(
-            "Left out of the estimate, since the joint turns round or is slow there, where \
-             friction is not the sign of its velocity: {}. Residuals of the tables are those of \
-             all samples. `options.slow=off` keeps them all.",
+            "Left out of the estimate, since the joint reverses or is slow there, where friction \
+             is not the sign of its velocity: {}. Residuals of the tables are those of all \
+             samples. `options.slow=off` keeps them all.",
             listed.join("; ")
         )
     })
@@ -125,21 +125,21 @@ fn lacking(lacking: &[(String, f64)]) -> Option<String> {
     let listed: Vec<String> = lacking.iter().map(of).collect();
     (!listed.is_empty()).then(|| {
         format!(
-            "What is left of the torque of {} is no noise: it is alike for longer than the filter \
-             makes it. The model lacks something (denavit diagnose looks for it), has other \
-             lengths or angles than the robot, or a column is scaled or late. Parameters are off \
-             by what that is like, and errors count that only as far as it is like chance.",
+            "The residual of {} is no noise: it is correlated for longer than the filter makes it. \
+             The model lacks something (denavit diagnose looks for it), has other lengths or \
+             angles than the robot, or a column is scaled or late. Parameters are off by what that \
+             is like, and errors count that only as far as it is like chance.",
             listed.join(", ")
         )
     })
 }
 
-/// That the model's own values leave far more than there is.
+/// That the nominal parameters leave far more than there is.
 fn other_robot(found: &Identification) -> Option<String> {
     let before = found.before.filter(|_| found.is_of_other_robot())?;
     Some(format!(
-        "With the model's own values {before:.0} times the torques are left: the log is of another \
-         robot, or the values of the model are far off."
+        "With the nominal parameters the residual is {before:.0} times the torques: the log is of \
+         another robot, or the nominal parameters are far off."
     ))
 }
 
@@ -147,9 +147,10 @@ fn other_robot(found: &Identification) -> Option<String> {
 fn no_bodies(found: &Identification) -> Option<String> {
     found.is_of_no_bodies().then(|| {
         format!(
-            "What was found is {:.0} standard errors from the nearest bodies that exist, over all \
-             parameters. The unit of the time or of another column may be another, or the robot, \
-             or it shows an effect that the model lacks; what was found is not to be believed.",
+            "The parameters are not physically consistent: the nearest that are lie {:.0} standard \
+             errors away, over all parameters. The unit of the time or of another column may be \
+             another, or the robot, or it shows an effect that the model lacks; do not trust these \
+             parameters.",
             found.consistent.distance
         )
     })
@@ -165,7 +166,7 @@ fn contradicting(one: &ContradictingLog) -> String {
             Some(Likeness::Factor(by)) => format!(", as if it were {by:.3} times as large"),
         };
         let [left, own] = [left, own].map(|share| 100.0 * share);
-        format!("{left:.1} % of the torque of {joint} is left, {own:.1} % by its own{like}")
+        format!("the residual of {joint} is {left:.1} % of its torque, {own:.1} % by its own{like}")
     };
     let joints: Vec<String> = one.joints.iter().map(of).collect();
     let (contradicts, advice) = match one.standing {
@@ -175,13 +176,13 @@ fn contradicting(one: &ContradictingLog) -> String {
         }
         Standing::HeldOut => (
             "and the logs for the estimate contradict each other",
-            "Which of them are right cannot be told.",
+            "Which of them are right is not known.",
         ),
         Standing::Undecided => (
             "and the other logs contradict each other",
             "The logs that agree are not both more and longer together than those that do not: \
-             which of them are right cannot be told, and what was found is not to be believed. \
-             Look at each log by itself.",
+             which of them are right is not known. Do not trust these parameters: look at each log \
+             by itself.",
         ),
     };
     format!(
@@ -208,15 +209,18 @@ fn unexplained(one: &Unexplained) -> String {
         ),
         (None, None) => ", although the joint moves. Its column may be another quantity, in \
                          another unit, or noise, or the zero of a position may be off, or the \
-                         model's geometry; what was found is not to be believed."
+                         model's geometry; do not trust these parameters."
             .to_owned(),
         (None, Some([from, to])) => format!(
             ", although the joint rests, from {from:.2} to {to:.2} s, and its friction holds less. \
              The column of its position may be stuck while it moves, or stiction or a brake holds \
-             it, which no equation knows; what was found is not to be believed."
+             it, which no equation knows; do not trust these parameters."
         ),
     };
-    format!("The torque of {joint} is not explained: {percent:.0} % of it is left{file}{what}")
+    format!(
+        "The torque of {joint} is not explained: the residual is {percent:.0} % of \
+             it{file}{what}"
+    )
 }
 
 /// A log of which noise makes most, beside others.

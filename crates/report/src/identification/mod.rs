@@ -90,8 +90,8 @@ impl IdentificationPage<'_> {
         let (grade, mut text) = match self.is_good {
             false => {
                 let text = format!(
-                    "Do not trust these parameters: they leave {left} of the torques of {whose}, \
-                     and what speaks against them is listed below"
+                    "Do not trust these parameters: their residual is {left} of the torques of \
+                     {whose}, and what speaks against them is listed below"
                 );
                 (Grade::Bad, text)
             }
@@ -121,7 +121,7 @@ impl IdentificationPage<'_> {
             are(of(Status::NotExcited)),
         );
         if let Some(before) = found.before {
-            text += &format!(" With the model's own values {} was left.", percent(before));
+            text += &format!(" With the nominal parameters it was {}.", percent(before));
         }
         text
     }
@@ -138,7 +138,7 @@ impl IdentificationPage<'_> {
         let notes: Vec<Part> =
             notes(found).into_iter().map(|text| Part::Paragraph { text }).collect();
         if !notes.is_empty() {
-            let summary = "Samples that were left out, and what is left without a name".to_owned();
+            let summary = "Samples that were left out, and residuals without a name".to_owned();
             parts.push(Part::Folded { summary, parts: notes });
         }
         let heading = "Before you use them".to_owned();
@@ -187,8 +187,8 @@ pub(super) fn residuals(train: &Validation, held_out: Option<&Validation>) -> Se
         ("joint", false),
         ("torque rms", true),
         ("residual rms", true),
-        ("left", true),
-        ("left of other logs", true),
+        ("residual", true),
+        ("residual, held out", true),
         ("largest residual", true),
         ("correlation with the next sample", true),
     ]);
@@ -207,9 +207,9 @@ pub(super) fn residuals(train: &Validation, held_out: Option<&Validation>) -> Se
         ];
         Row { cells, is_marked: false }
     });
-    let caption = "What is left of the torques [N m, N], after the filter. The filter makes the \
-                   noise of neighbouring samples alike: also of a good fit this correlation is \
-                   near 1 where samples are much faster than the filter.";
+    let caption = "Residuals [N m, N], after the filter. The filter makes the noise of \
+                   neighbouring samples alike: also of a good fit this correlation is near 1 where \
+                   samples are much faster than the filter.";
     let table = HtmlTable { caption: caption.to_owned(), columns, rows: rows.collect() };
     Section { heading: "Residuals".to_owned(), parts: vec![Part::Table(table)] }
 }
@@ -222,11 +222,11 @@ pub(super) fn remarks(remarks: &[String]) -> Option<Section> {
     (!parts.is_empty()).then_some(Section { heading, parts })
 }
 
-/// How far the nearest bodies that exist are, where the estimate belongs to none.
+/// How far the nearest physically consistent parameters are, where the estimate is not so.
 pub(super) fn nearest_bodies(distance: f64) -> String {
     match distance > 1.0 {
         true => format!(
-            "The estimate belongs to no bodies that exist; the nearest ones are {} standard \
+            "The estimate is not physically consistent; the nearest one that is lies {} standard \
              errors away, over all parameters.",
             short(distance)
         ),

@@ -22,7 +22,7 @@ pub(crate) fn base_parameters(found: &[IdentifiedParameter]) -> Result<HtmlTable
     ]);
     let rows = found.iter().map(base_row).collect::<Result<_, _>>()?;
     let caption = "What the logs determine: sums of the bodies' parameters. Marked are those that \
-                   the motion does not show, which keep the model's values.";
+                   the motion does not show, which keep their nominal values.";
     Ok(HtmlTable { caption: caption.to_owned(), columns, rows })
 }
 
@@ -98,9 +98,10 @@ pub(super) fn bodies(
         ];
         rows.push(Row { cells, is_marked: is_hidden });
     }
-    let caption = "Numbers of the model file, of the nearest bodies that exist. Where logs \
+    let caption =
+        "Numbers of the model file, of the nearest physically consistent robot. Where logs \
                    determine sums alone, the rest stays near the model, and no error is known."
-        .to_owned();
+            .to_owned();
     HtmlTable { caption, columns, rows }
 }
 

@@ -13,8 +13,8 @@ impl SimulationPart<'_> {
             ("joint", false),
             ("position before", true),
             ("position", true),
-            ("rate before", true),
-            ("rate", true),
+            ("velocity before", true),
+            ("velocity", true),
             ("torque before", true),
             ("torque", true),
         ]);

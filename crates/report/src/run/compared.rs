@@ -64,10 +64,10 @@ fn block(svg: &mut Svg, joint: &str, curve: &Curve, corner: [f64; 2]) {
         y: Scale::around(before.iter().chain(after).copied(), 2.0),
     };
     left.draw(svg, true);
-    left.name_y(svg, "left [N m, N]");
+    left.name_y(svg, "residual [N m, N]");
     left.curve(svg, times, before, RED);
     left.curve(svg, times, after, GREY);
-    let legend = [("left before", RED), ("left with the effects", GREY)];
+    let legend = [("residual before", RED), ("residual with the effects", GREY)];
     draw_legend(svg, [corner[0] + width, below - 6.0], &legend);
     svg.label([corner[0] + width, below + TORQUE + 32.0], "end", TICK, "time [s]");
 }

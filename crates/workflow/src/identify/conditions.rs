@@ -7,7 +7,7 @@ use denavit_measure::condition::{Averaging, Conditioned, Conditioning, Derivativ
 pub struct Conditions {
     /// The filter of positions and torques.
     pub filter: FilterChoice,
-    /// One sample in so many is left; if nothing is said, as the filter allows and 1200 are left.
+    /// One sample in so many is left; by default, as the filter allows and 1200 remain.
     pub decimation: Option<usize>,
     /// Which laps are averaged.
     pub averaging: Averaging,

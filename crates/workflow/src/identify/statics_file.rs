@@ -8,6 +8,7 @@ use denavit_simulate::scenario::{
     Cause, FieldsNumbers, NodeNumbers, Range, Report, ScenarioError, check_format,
 };
 use serde_json::json;
+use std::collections::BTreeSet;
 
 /// The tag of a file of measurements at rest.
 pub const STATICS_FORMAT: &str = "denavit-statics/1";
@@ -37,7 +38,7 @@ pub(super) fn read_statics(
         };
         let mut all = Vec::new();
         for node in items("weighings", report) {
-            all.extend(weighing(node, report));
+            all.extend(weighing(node, model, report));
         }
         for node in items("postures", report) {
             all.extend(posture(node, model, report));
@@ -46,11 +47,24 @@ pub(super) fn read_statics(
     })
 }
 
-fn weighing(node: Node<'_>, report: &mut Report) -> Option<StaticMeasurement> {
+fn weighing(
+    node: Node<'_>,
+    model: &RegressionModel,
+    report: &mut Report,
+) -> Option<StaticMeasurement> {
     let fields = node.fields(&["links", "mass_kg", "std_kg"], report)?;
-    let links = fields.require("links", report)?.items(report);
-    let links: Vec<String> =
-        links.into_iter().filter_map(|link| link.text(report)).map(str::to_owned).collect();
+    let owners = model.standard.iter().filter_map(|one| one.owner.as_ref());
+    let of_joints = model.joints.iter().map(|joint| joint.name.as_str());
+    let known: BTreeSet<&str> = owners.map(|(link, _)| link.as_str()).chain(of_joints).collect();
+    let mut links = Vec::new();
+    for link in fields.require("links", report)?.items(report) {
+        let Some(name) = link.text(report) else { continue };
+        if !known.contains(name) {
+            let near = nearest(name, known.iter().copied()).map(str::to_owned);
+            report.push(link.at(), Cause::UnknownLink(name.to_owned(), near));
+        }
+        links.push(name.to_owned());
+    }
     let mass_kg = fields.required_number("mass_kg", MASS_KG, report);
     let std_kg = fields.required_number("std_kg", DEVIATION, report);
     Some(StaticMeasurement::Weighing { links, mass_kg, std_kg })

@@ -143,7 +143,7 @@ fn the_page_tells_it(directory: &Directory) {
         "<math",
         "knee, drag.csv",
         "of it remains",
-        "Simulation gap",
+        "Simulation mismatch",
         "Round 1",
         "Its odds are",
         "N·m·s²",

@@ -144,7 +144,7 @@ fn options_that_leave_nothing_are_named() {
     write(&directory, "log.csv", 10.0, 0.6, 14, 5);
     let (code, text) = said(&directory, &["--train", "log.csv", "--skip-slow", "50"]);
     assert_eq!(code, Some(2), "{text}");
-    assert!(text.contains("as fast as --skip-slow says"), "{text}");
+    assert!(text.contains("as fast as --skip-slow asks"), "{text}");
     for step in ["0", "100", "nan"] {
         let (code, text) = said(&directory, &["--train", "log.csv", "--resolution", step]);
         assert_eq!(code, Some(2), "{text}");
@@ -171,7 +171,7 @@ fn numbers_that_nothing_can_be_are_refused() {
         ("--resolution=1", "--resolution in rad or m"),
         ("--resolution=0", "a step above 0 and up to 1 rad or m"),
         ("--resolution=1.1", "a step above 0 and up to 1 rad or m"),
-        ("--skip-slow=1e9", "a rate from 1e-9 to 1000 rad/s or m/s"),
+        ("--skip-slow=1e9", "a velocity from 1e-9 to 1000 rad/s or m/s"),
         ("--skip-slow=900", "--skip-slow"),
     ] {
         let (code, text) = said(&directory, &["--train", "log.csv", option]);

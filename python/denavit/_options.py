@@ -138,7 +138,7 @@ def answered(
 
 
 def _with_types(error: Error, logs: Iterable[Columns]) -> Error:
-    """The same; of a column that is said not to be there, and is no column of numbers, its type."""
+    """The same; of a column that is reported as missing, and is no column of numbers, its type."""
     faults = list(error.faults)
     for _, _, log, header, _ in logs:
         for key, kind in header:

@@ -62,7 +62,7 @@ class FoundEffect:
 
 @dataclass(frozen=True, kw_only=True)
 class Mismatch:
-    """What is left of the torques, as a share of them."""
+    """Torque mismatch: size of the residual over that of the torque."""
 
     before: float
     after: float

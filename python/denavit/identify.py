@@ -40,7 +40,7 @@ class IdentifiedParameter:
 
 @dataclass(frozen=True, kw_only=True)
 class JointResidual:
-    """What is left of the torque of a joint."""
+    """The residual of a joint's torque."""
 
     joint: str
     train: float
@@ -53,7 +53,7 @@ class JointResidual:
 
 @dataclass(frozen=True, kw_only=True)
 class Residual:
-    """What is left of the torques, as a share of them."""
+    """Size of the residual over that of the torque."""
 
     train: float
     validate: float | None

@@ -30,7 +30,7 @@ from .model import Model, as_place, load
 from .studies.here import Runner, in_process
 
 USUAL_HEAD = 1 << 19
-"""Rows of a head if nothing is said."""
+"""Rows of a head by default."""
 
 BATCH = 1 << 16
 """Rows that are read at once."""
@@ -192,7 +192,7 @@ def identify_long(
     ``head`` is how many of its rows are identified as any log is, fewer than all; ``time`` the
     column of its times, which ``columns`` maps to ``t`` if it has another name. What the file says
     of itself (``torque_side``, ``model``) counts as in any log. ``validate`` are logs that judge
-    the answer; one that is a part of ``log`` is told, and the answer is no good one then.
+    the answer; one that is a part of ``log`` is reported, and the answer is no good one then.
     ``runner`` computes the pieces (:func:`denavit.studies.on_ray.on_ray` on many machines, each of
     which reads the file by the same path); ``part`` is where rows of pieces are kept, so that a run
     that was broken off goes on. ``options`` are those of :func:`denavit.identify`: ``method``

@@ -20,7 +20,7 @@ from .errors import _argument
 
 
 class ModelWarning(UserWarning):
-    """What is said of a model that is read as it stands."""
+    """What is reported of a model that is read as it stands."""
 
 
 class DynamicsTerms(NamedTuple):

@@ -48,7 +48,7 @@ class IdentifiedSpring:
 
 @dataclass(frozen=True, kw_only=True)
 class LoadResidual:
-    """What is left of the torque on the load of a joint."""
+    """The residual of the torque on the load of a joint."""
 
     joint: str
     torque_rms: float
@@ -68,7 +68,7 @@ class TwoStageIdentification(Answer):
     """Base parameters of the load."""
     residual: tuple[LoadResidual, ...] = of(LoadResidual)
     validate: float | None
-    """What is left of the torques of the logs for validation, as a share of them."""
+    """Residual of the logs for validation over their torques."""
     consistent: ConsistentBodies = of(ConsistentBodies, repr=False)
     remarks: tuple[str, ...] = ()
     updated: Model | None = field(default=None, repr=False)

@@ -40,7 +40,7 @@ for effect in found.effects:
     print(effect.effect, "at", effect.at, values, f"log odds {effect.log_odds:.0f}")
 
 # %% [markdown]
-# What is left of the torques on the other motion, before and after.
+# The torque mismatch on the other motion, before and after.
 
 # %%
 gap = found.gap.validate

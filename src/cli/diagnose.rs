@@ -195,6 +195,6 @@ fn positive(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("`{text}` is no number"))?;
     match value.is_finite() && value > 0.0 {
         true => Ok(value),
-        false => Err("must be above 0".to_owned()),
+        false => Err("must be a finite number above 0".to_owned()),
     }
 }

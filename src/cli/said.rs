@@ -16,7 +16,7 @@ use std::time::Duration;
 /// How much is reported.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Args)]
 pub(super) struct Loudness {
-    /// Show no progress, and say no notes: standard error has what is wrong, and nothing else
+    /// Show no progress and no notes: standard error has what is wrong, and nothing else
     #[arg(short, long, global = true, display_order = 900)]
     quiet: bool,
     /// Say how long each stage of long work took, and the whole

@@ -193,7 +193,8 @@ impl<'a> Search<'a> {
         let glance = self.glance(now, parts);
         let seen = self.seen(&glance, parts, is_asked);
         let most = seen.first().map_or(0.0, |(gain, _)| *gain);
-        let near = |(gain, _): &&(f64, &Part)| gain.is_finite() && *gain > most - policy::FAR;
+        let far = policy::FAR.max(policy::FAR_SHARE * most);
+        let near = |(gain, _): &&(f64, &Part)| gain.is_finite() && *gain > most - far;
         let is_rival = |(_, part): &&(f64, &Part)| {
             let gain = |glance: &Glance| glance.see(&part.terms).gain;
             let at = |part: &Part| &self.weighing.candidates[part.placed.candidate].at;

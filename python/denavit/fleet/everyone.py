@@ -11,8 +11,8 @@ from .changes import Judged
 from .engine import Fleet
 
 LARGE, UNUSUAL = 8.0, 4.0
-"""A common move is told that is so many times the error of a robot, and so many times as large as
-moves of this fleet are. The weather of a hall moves it by less. Chosen on simulated fleets:
+"""A common move is reported that is so many times the error of a robot, and so many times as large
+as moves of this fleet are. The weather of a hall moves it by less. Chosen on simulated fleets:
 3 of 100 quiet ones have such a night."""
 
 Key = tuple[str, str]

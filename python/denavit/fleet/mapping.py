@@ -1,4 +1,4 @@
-"""Maps of the columns of logs: what is wrong with one is said before any robot is read."""
+"""Maps of the columns of logs: what is wrong with one is reported before any robot is read."""
 
 from __future__ import annotations
 

@@ -137,7 +137,7 @@ class _Robot:
 
     @property
     def shown(self) -> Outcome:
-        """What is told of: the alarm that stands, or the last night."""
+        """What is reported: the alarm that stands, or the last night."""
         return self.standing or self.last
 
     @property

@@ -315,7 +315,7 @@ def _is_parquet(name: str) -> bool:
 
 
 def _content(system: Any, path: str, *, keeps: bool) -> tuple[bytes, str]:
-    """Reads a log from end to end, so that a store that fails is told from a log that is corrupt.
+    """Reads a log from end to end, so that a store that fails is no log that is corrupt.
     What is not kept is read again from the file, which the machine remembers. Names it, too.
     """
     kept, named = [], hashlib.sha256()

@@ -69,7 +69,7 @@ def _unreachable(address: str | None, error: Exception) -> Error:
     cause = f"no cluster of Ray answers: {first}"
     hint = "`ray start --head` starts one and says its address; `auto` finds it on its own machine"
     if address is None:
-        cause, hint = f"Ray does not start here: {first}", "`ray stop` ends what is left of another"
+        cause, hint = f"Ray does not start here: {first}", "`ray stop` ends an old one"
     return Error([Fault(address, None, None, cause, hint)])
 
 

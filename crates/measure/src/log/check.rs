@@ -74,14 +74,22 @@ fn position(signals: &JointSignals, joint: &RegressionJoint, found: &mut Finding
             let beyond = [low < limits[0] - slack, high > limits[1] + slack];
             let reach = limits[0].abs().max(limits[1].abs());
             if !joint.slides && largest > 1.5 * reach && largest > 6.0 {
-                found.suspicions.push(Suspicion::Degrees { column, largest });
+                found.suspicions.push(Suspicion::Degrees {
+                    column,
+                    largest,
+                    factor: 1.0_f64.to_radians(),
+                });
             } else if beyond[0] || beyond[1] {
                 let value = if beyond[0] { low } else { high };
                 found.suspicions.push(Suspicion::BeyondLimits { column, value, limits });
             }
         }
         None if !joint.slides && largest > LARGEST_ANGLE_RAD => {
-            found.suspicions.push(Suspicion::Degrees { column, largest });
+            found.suspicions.push(Suspicion::Degrees {
+                column,
+                largest,
+                factor: 1.0_f64.to_radians(),
+            });
         }
         None => {}
     }

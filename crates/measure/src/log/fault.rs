@@ -70,8 +70,8 @@ pub enum LogFault {
 pub enum Suspicion {
     /// The time seems to count milliseconds or microseconds.
     TimeUnit { step: f64, factor: f64 },
-    /// A position seems to be in degrees.
-    Degrees { column: String, largest: f64 },
+    /// A position seems to be in degrees; holds what brings the column to radians.
+    Degrees { column: String, largest: f64, factor: f64 },
     /// A logged rate is another multiple of the derivative of its position.
     RateScale { column: String, ratio: f64 },
     /// A logged rate is not the derivative of its position.
@@ -92,6 +92,16 @@ pub enum Suspicion {
 }
 
 impl Suspicion {
+    /// With factors of what stands in the log, whose columns have been scaled already.
+    pub(super) fn of_log(mut self, scale_of: impl Fn(&str) -> f64) -> Self {
+        match &mut self {
+            Self::TimeUnit { factor, .. } => *factor *= scale_of("t"),
+            Self::Degrees { column, factor, .. } => *factor *= scale_of(column),
+            _ => {}
+        }
+        self
+    }
+
     /// Whether a single sample can raise it, and not how a log goes on alone.
     pub fn is_of_samples(&self) -> bool {
         match self {
@@ -325,11 +335,10 @@ impl fmt::Display for Suspicion {
                     _ => "",
                 }
             )?,
-            Self::Degrees { column, largest } => write!(
+            Self::Degrees { column, largest, factor } => write!(
                 f,
                 "`{column}` goes to {largest:.4}, as if it were in degrees\n  hint: map it: \
-                 {{\"{column}\": {{\"scale\": {}}}}}",
-                1.0_f64.to_radians()
+                 {{\"{column}\": {{\"scale\": {factor}}}}}"
             )?,
             Self::RateScale { column, ratio } => write!(
                 f,
@@ -447,7 +456,7 @@ impl fmt::Display for LogRemark {
             Self::LoweredFilter { cutoff_hz } => write!(
                 f,
                 "noise of positions would bias parameters or residuals: filtered below {} Hz \
-                 (`conditions.filter` says otherwise)",
+                 (`conditions.filter` sets another)",
                 short(*cutoff_hz)
             ),
             Self::NoSuchLink { link } => {

@@ -111,7 +111,12 @@ impl ColumnMapping {
 fn entry(name: &str, node: Node<'_>, report: &mut Report<MappingCause>) -> Option<ColumnSource> {
     match &node.0.value {
         Value::Null => None,
-        Value::Text(column) => Some(ColumnSource::of(column)),
+        Value::Text(column) => {
+            if column.is_empty() {
+                report.push(node.at(), MappingCause::NoName);
+            }
+            Some(ColumnSource::of(column))
+        }
         Value::Object(_) => {
             let fields = node.fields(&["column", "scale", "offset"], report)?;
             let column = fields.text("column", report).unwrap_or(name);
@@ -123,8 +128,11 @@ fn entry(name: &str, node: Node<'_>, report: &mut Report<MappingCause>) -> Optio
                 given.unwrap_or(without)
             };
             let (scale, offset) = (number("scale", 1.0), number("offset", 0.0));
-            if scale == 0.0 {
+            if !scale.is_normal() {
                 report.push(fields.place("scale"), MappingCause::NoScale);
+            }
+            if column.is_empty() {
+                report.push(fields.place("column"), MappingCause::NoName);
             }
             Some(ColumnSource { column: column.to_owned(), scale, offset })
         }

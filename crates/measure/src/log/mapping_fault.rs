@@ -10,8 +10,10 @@ pub(crate) enum MappingCause {
     Form(model::Cause),
     /// An entry of another kind; holds what it is.
     NoEntry(&'static str),
-    /// A scale of 0.
+    /// A scale of 0, or about that.
     NoScale,
+    /// A name without letters.
+    NoName,
 }
 
 impl From<model::Cause> for MappingCause {
@@ -28,6 +30,7 @@ impl fmt::Display for MappingCause {
                 write!(f, "an entry is the name of a column, an object, or null; found {found}")
             }
             Self::NoScale => write!(f, "a scale of 0 makes every number of the column the same"),
+            Self::NoName => write!(f, "the name of the column is empty"),
         }
     }
 }
@@ -41,6 +44,7 @@ impl Explained for MappingCause {
             Self::Form(cause) => cause.hint(),
             Self::NoEntry(_) => Some(example.to_owned()),
             Self::NoScale => None,
+            Self::NoName => Some("null leaves a column out".to_owned()),
         }
     }
 }

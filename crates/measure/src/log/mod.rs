@@ -230,6 +230,7 @@ pub fn read_opened(
     log.remarks.append(&mut found.remarks);
     let mut faults = found.faults;
     for suspicion in jumps.into_iter().chain(found.suspicions) {
+        let suspicion = suspicion.of_log(|column| wanted.scale_of(column));
         match robot.accepts_suspicious {
             true => log.remarks.push(LogRemark::Accepted(suspicion)),
             false => faults.push(LogFault::Suspicion(suspicion)),

@@ -41,6 +41,14 @@ pub(super) struct Wanted {
     torque_side: Option<TorqueSide>,
 }
 
+impl Wanted {
+    /// What the numbers of a column were multiplied by.
+    pub(super) fn scale_of(&self, name: &str) -> f64 {
+        let own = self.columns.iter().find(|column| column.name == name);
+        own.map_or(1.0, |column| column.scale)
+    }
+}
+
 /// A column as the project calls it.
 struct Ours {
     name: String,

@@ -147,7 +147,9 @@ fn write(out: &mut String, found: &ExcitationAnswer<'_>) -> fmt::Result {
         };
         let listed: Vec<String> = check.assumed.iter().map(of).collect();
         let text = format!(
-            "limits that the model does not give, those of one sine a lap over the whole range: {}",
+            "limits that the model does not give, and that were taken from one sine a lap over the \
+             whole range: {}\n  hint: `limits` of a joint in the model file can state them; low \
+             ones make the motion weak",
             listed.join(", ")
         );
         writeln!(out, "{}", paragraph("", "  ", &text))?;

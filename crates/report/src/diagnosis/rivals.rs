@@ -23,7 +23,7 @@ impl DiagnosisPage<'_> {
                 } else if separated.contains(&other.candidate) {
                     "the motion below"
                 } else {
-                    "other logs: no motion was looked for"
+                    "other logs: no motion was found"
                 };
                 let odds = Cell::number(other.log_odds, odds(other.log_odds));
                 let cells =

@@ -26,7 +26,7 @@ fn verdict_sentence(found: &Diagnosis, candidates: &[Candidate]) -> String {
     let mut text = match found.verdict {
         Verdict::NothingMissing => nothing_missing(&found.held_out, Rest::of(found)),
         Verdict::Explained => {
-            "What the model lacks is named, and explains the disagreement.".to_owned()
+            "What the model lacks is named, and explains the torque mismatch.".to_owned()
         }
         Verdict::PartlyExplained => "A part of what the model lacks is named.".to_owned(),
         Verdict::Unexplained => {
@@ -52,7 +52,7 @@ enum Rest<'a> {
     Physics(&'a Structure),
     /// A disturbance; a function of the motion explains some of it.
     Disturbance(Option<&'a Structure>),
-    /// What is not looked at: most is left where drives turn around or rest.
+    /// What is not looked at: most is left at velocity reversals and rests.
     Reversals,
 }
 
@@ -177,6 +177,6 @@ mod tests {
             said(0.0211, 0.0017, Rest::Reversals)
                 .ends_with("most of it at velocity reversals and rests.")
         );
-        assert!(said(0.004, 0.0, disturbance).contains("0.40 % of the torque"));
+        assert!(said(0.004, 0.0, disturbance).contains("mismatch is 0.40 %"));
     }
 }

@@ -127,8 +127,8 @@ fn lacking(lacking: &[(String, f64)]) -> Option<String> {
         format!(
             "The residual of {} is no noise: it is correlated for longer than the filter makes it. \
              The model lacks something (denavit diagnose looks for it), has other lengths or \
-             angles than the robot, or a column is scaled or late. Parameters are off by what that \
-             is like, and errors count that only as far as it is like chance.",
+             angles than the robot, or a column is scaled or late. Parameters take up what of it \
+             is like them, and stated errors do not count that.",
             listed.join(", ")
         )
     })
@@ -148,9 +148,9 @@ fn no_bodies(found: &Identification) -> Option<String> {
     found.is_of_no_bodies().then(|| {
         format!(
             "The parameters are not physically consistent: the nearest that are lie {:.0} standard \
-             errors away, over all parameters. The unit of the time or of another column may be \
-             another, or the robot, or it shows an effect that the model lacks; do not trust these \
-             parameters.",
+             errors away, over all parameters. Perhaps a column or the time is in another unit, \
+             the log is of another robot, or it shows an effect that the model lacks. Do not trust \
+             these parameters.",
             found.consistent.distance
         )
     })
@@ -202,9 +202,9 @@ fn unexplained(one: &Unexplained) -> String {
     let what = match (one.beside, one.rest_s) {
         (Some(share), _) => format!(
             ", without what is near reversals, and {:.1} % in the logs for the estimate: far more \
-             than noise, the filter and errors of the parameters make. The unit of its time or of \
-             another column may be another, or the robot, or it shows a law that the model lacks; \
-             it does not confirm what was found.",
+             than noise, the filter and errors of the parameters make. Perhaps a column or the \
+             time is in another unit, the log is of another robot, or it shows a law that the \
+             model lacks. It does not confirm the parameters.",
             100.0 * share
         ),
         (None, None) => ", although the joint moves. Its column may be another quantity, in \

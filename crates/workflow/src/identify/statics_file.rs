@@ -16,7 +16,7 @@ pub const STATICS_FORMAT: &str = "denavit-statics/1";
 const KEYS: &[&str] = &["format", "name", "description", "source", "weighings", "postures"];
 
 const MASS_KG: Range = Range { least: 0.0, most: 1e9 };
-const DEVIATION: Range = Range { least: 1e-12, most: 1e9 };
+const DEVIATION: Range = Range { least: 1e-6, most: 1e9 };
 const TORQUE: Range = Range { least: -1e12, most: 1e12 };
 const POSITION: Range = Range { least: -1e9, most: 1e9 };
 

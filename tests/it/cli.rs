@@ -7,6 +7,7 @@ mod decompose;
 mod diagnose;
 mod diagnose_emps;
 mod diagnose_excitation;
+mod diagnose_spring;
 mod effects;
 mod embedded;
 mod emit_languages;

@@ -4,11 +4,12 @@ use super::{Directory, run_in};
 use serde_json::{Value, json};
 use std::fs;
 
+fn body(mass: f64, com: [f64; 3], [x, y]: [f64; 2]) -> Value {
+    json!({"mass": mass, "com": com, "inertia": {"xx": x, "yy": y, "zz": y}, "about": "com"})
+}
+
 /// An arm of two joints, and effects in it.
 fn arm(effects: Value) -> Value {
-    let body = |mass: f64, com: [f64; 3], [x, y]: [f64; 2]| {
-        json!({"mass": mass, "com": com, "inertia": {"xx": x, "yy": y, "zz": y}, "about": "com"})
-    };
     json!({
         "format": "denavit-model/1",
         "name": "rig",
@@ -23,7 +24,10 @@ fn arm(effects: Value) -> Value {
              "limits": {"position": [-1.5, 1.5], "velocity": 5, "torque": [-20, 20]},
              "body": body(1.1, [0.12, 0.0, 0.01], [0.002, 0.01])},
         ],
-        "drives": {"pan": {"viscous": 0.2, "coulomb": 0.3}, "tilt": {"viscous": 0.1, "coulomb": 0.2}},
+        "drives": {
+            "pan": {"viscous": 0.2, "coulomb": 0.3},
+            "tilt": {"viscous": 0.1, "coulomb": 0.2},
+        },
         "effects": effects,
     })
 }

@@ -34,6 +34,7 @@ impl Wide {
 
     /// # Safety
     /// There is nothing that it could be called on.
+    // The call of the wide code on other processors has the same signature.
     #[allow(unsafe_code)]
     pub(crate) unsafe fn call(&mut self, _: &mut [*const f64], _: &mut [*mut f64], _: usize) {
         match *self {}

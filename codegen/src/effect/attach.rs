@@ -263,13 +263,7 @@ impl Attaching<'_> {
     fn add_spring_law(&self, robot: &mut Robot, torque: ExprId) -> Result<(), Cause> {
         // No file can name these symbols: they are no identifiers.
         let name = &robot.links[self.links[0]].name;
-        let names = [
-            format!("deflection of {name}"),
-            format!(
-                "velocity of the deflection of \
-                                                               {name}"
-            ),
-        ];
+        let names = ["", "velocity of the "].map(|what| format!("{what}deflection of {name}"));
         let deflection = robot.dag.symbol(&names[0], SymbolClass::Configuration);
         let rate = robot.dag.symbol(&names[1], SymbolClass::Rate);
         // No law of a spring has an acceleration or a torque.

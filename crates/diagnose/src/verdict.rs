@@ -137,7 +137,7 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
         let (share, place) = (percent(left.share), &diagnosis.places[left.equation]);
         format!(
             "a residual of {share} of the torque of {place} is in the bands in which the robot \
-                 moves"
+             moves"
         )
     });
     let broad = || {

@@ -79,6 +79,7 @@ impl Wide {
     /// # Safety
     /// `inputs` and `outputs` hold the addresses of the layout, of `blocks` blocks of numbers each,
     /// and nothing else reads or writes the outputs meanwhile.
+    // Machine code can only be called unsafely.
     #[allow(unsafe_code)]
     pub(crate) unsafe fn call(
         &mut self,

@@ -82,7 +82,7 @@ impl fmt::Display for MisreadColumns {
         write!(
             f,
             ": the residual of an estimate is {before} of the torques as the log is, and \
-                   {after} so"
+             {after} so"
         )?;
         if let Some([before, after]) = self.left_by_model.map(|left| left.map(share)) {
             write!(f, "; {} {before} and {after}", self.values)?;

@@ -1,7 +1,7 @@
 //! Logs with the nominal model's rows: all that is asked of them, weighted and stacked.
 
 use super::known::weights;
-use super::law::{Law, Motion, derivative};
+use super::law::{Law, Motion};
 use super::nominal::{Nominal, Phi};
 use super::rows::{LogRows, PerJoint, behind_springs, of_axes, torques};
 use super::signals::Signals;
@@ -9,6 +9,7 @@ use super::turning::{PER_JOINT, settle, unnamed};
 pub(super) use crate::policy::data::SPRING_ZERO;
 use denavit_evidence::policy;
 use denavit_measure::{JointIndex, LogIndex};
+use denavit_numerics::derivative;
 use denavit_plants::effect::Drive;
 use std::ops::Range;
 

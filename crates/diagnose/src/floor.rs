@@ -5,6 +5,7 @@ use super::rows::torques;
 use super::signals::Signals;
 use crate::policy::floor::{LEAST, UNREPEATABLE};
 use denavit_measure::condition::{Butterworth, Laps};
+pub(super) use denavit_numerics::rms;
 
 /// The floor of one log, after the filter of the rows: the deviation of each joint's torque, then
 /// of each spring's [N m, N]; of white noise above the motion's frequencies and of steps of
@@ -94,9 +95,4 @@ fn lap_noise(signal: &[f64], laps: Laps) -> f64 {
     let end = (start + (count - 1) * samples).min(signal.len().saturating_sub(samples));
     let pairs = start..end;
     usual(pairs.map(|k| signal[k + samples] - signal[k]).collect()) / 2.0_f64.sqrt()
-}
-
-/// Root of the mean square.
-pub fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }

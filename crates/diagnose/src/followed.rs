@@ -2,13 +2,13 @@
 //! pass on.
 
 use super::data::ModelTorques;
-use super::law::derivative;
 use super::nominal::Nominal;
 use super::rows::PerJoint;
 use super::signals::Signals;
 use super::state::{Effects, Taken};
 use crate::policy::followed::SETTLED;
 use denavit_measure::JointIndex;
+use denavit_numerics::derivative;
 use denavit_plants::trajectory::Reference;
 
 /// A robot that follows motions: the nominal model with z, and effects that it has.

@@ -5,13 +5,13 @@
 //! that of sliding. Noise is taken to be even in time, so that rows count by what is not known of
 //! them.
 
-use super::law::derivative;
 use super::nominal::{Nominal, Phi};
 use super::rows::{PerJoint, torques as torques_of};
 use super::signals::Signals;
 use crate::policy::known::{CREEP, RINGING};
 use denavit_evidence::policy;
 use denavit_measure::JointIndex;
+use denavit_numerics::derivative;
 
 /// For each joint what each row of a log counts, from 0 to 1.
 pub(super) fn weights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {

@@ -98,13 +98,3 @@ pub trait Law {
         &[]
     }
 }
-
-/// The central difference of a signal, one-sided at its ends.
-pub(super) fn derivative(signal: &[f64], step_s: f64) -> Vec<f64> {
-    let last = signal.len().saturating_sub(1);
-    let at = |k: usize| {
-        let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
-        (signal[after] - signal[before]) / (step_s * (after - before).max(1) as f64)
-    };
-    (0..signal.len()).map(at).collect()
-}

@@ -62,7 +62,6 @@ pub use elastic::{BeforeSprings, Spring, before_springs};
 pub use error::{Error, ErrorKind};
 pub use excitation::Visible;
 pub use experiment::Experiment;
-pub use floor::rms;
 pub use gap::{Gap, share_closed};
 pub use given::{Belief, given_candidates};
 pub use law::{Law, Motion, Response};

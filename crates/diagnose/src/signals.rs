@@ -7,7 +7,6 @@
 
 use super::between::{between, cubic};
 use super::floor::white_noise;
-use super::law::derivative;
 use super::spectra::{cosine_lines, last_driven};
 use super::standstill::{self, Rest};
 use crate::policy::signals::{ENOUGH_ROWS, LEAST_RATE_HZ, LEAST_ROWS, ROWS_PER_PERIOD};
@@ -15,7 +14,7 @@ use denavit_evidence::policy;
 use denavit_measure::JointIndex;
 use denavit_measure::condition::{Butterworth, STENCIL, acceleration, rate};
 use denavit_measure::log::{JointSignals, MeasuredLog};
-use denavit_numerics::Random;
+use denavit_numerics::{Random, derivative};
 use std::ops::Range;
 
 /// The filters of a diagnosis.

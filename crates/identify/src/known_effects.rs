@@ -10,6 +10,7 @@ use super::forward::{DriveMotion, MotionLog};
 use denavit_codegen::effect::{Channel, EffectSite, SpringSide};
 use denavit_measure::condition::{Butterworth, Conditioned, STENCIL};
 use denavit_measure::log::MeasuredLog;
+use denavit_numerics::derivative;
 use denavit_plants::effect::{AddedLaw, Drive, EffectLaw, JointSamples};
 use denavit_plants::regression::{RegressionModel, StandardParameter};
 use std::ops::Range;
@@ -21,8 +22,8 @@ pub fn undo_readings(log: &mut MeasuredLog, laws: &[AddedLaw]) {
         let channel = law.law.channel();
         let joint = &log.joints[law.joint];
         let zeros = vec![0.0; t.len()];
-        let qd = joint.qd.clone().unwrap_or_else(|| slope(&joint.q, log.step_s));
-        let qdd = joint.qdd.clone().unwrap_or_else(|| slope(&qd, log.step_s));
+        let qd = joint.qd.clone().unwrap_or_else(|| derivative(&joint.q, log.step_s));
+        let qdd = joint.qdd.clone().unwrap_or_else(|| derivative(&qd, log.step_s));
         let tau = joint.tau.as_deref().unwrap_or(&zeros);
         let samples = JointSamples {
             t: &t,
@@ -87,7 +88,7 @@ pub fn undo_logged_torques(log: &mut MotionLog, model: &RegressionModel, laws: &
     let samples = log.q.first().map_or(0, Vec::len);
     let mut motion = log.q.clone();
     motion.extend(log.qd.iter().cloned());
-    motion.extend(log.qd.iter().map(|qd| slope(qd, log.step_s)));
+    motion.extend(log.qd.iter().map(|qd| derivative(qd, log.step_s)));
     debug_assert_eq!(motion.len(), 3 * n);
     let loads = loads(model, &motion);
     let (step_s, start_s, drives) =
@@ -139,7 +140,7 @@ impl Sprung {
         let less = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect();
         Self {
             rate: own.rate.clone(),
-            acceleration: slope(&own.rate, step_s),
+            acceleration: derivative(&own.rate, step_s),
             deflection: [less(&own.angle, q), less(&own.rate, qd)],
         }
     }
@@ -172,7 +173,7 @@ impl Moved<'_> {
         let t: Vec<f64> =
             (0..samples).map(|k| self.start_s + self.step_s * (first + k) as f64).collect();
         let [load_rate, load_rate_2] =
-            [joint, other].map(|joint| slope(&self.loads[joint], self.step_s));
+            [joint, other].map(|joint| derivative(&self.loads[joint], self.step_s));
         let sprung = |joint: usize| self.sprung.get(joint).and_then(Option::as_ref);
         let rates = |joint: usize| match sprung(joint).filter(|_| law.side == SpringSide::Motor) {
             Some(own) => [&own.rate, &own.acceleration],
@@ -215,14 +216,4 @@ fn phi_of(model: &RegressionModel, of_bodies: bool) -> Vec<f64> {
 /// The torques of the bodies alone, with the values that the model gives [N m, N].
 fn loads(model: &RegressionModel, motion: &[Vec<f64>]) -> Vec<Vec<f64>> {
     model.torques(motion, &phi_of(model, true))
-}
-
-/// Central differences, one-sided at the ends.
-fn slope(signal: &[f64], step_s: f64) -> Vec<f64> {
-    let last = signal.len().saturating_sub(1);
-    let at = |k: usize| {
-        let (from, to) = (k.saturating_sub(1), (k + 1).min(last));
-        (signal[to] - signal[from]) / (step_s * (to - from).max(1) as f64)
-    };
-    (0..signal.len()).map(at).collect()
 }

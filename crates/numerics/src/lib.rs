@@ -8,12 +8,14 @@
 //! - [`interval_factor`], [`least_by_chance`]: what chance makes of errors and variances
 //! - [`long_run`], [`time_alike`]: variances and samples where neighbours are alike
 //! - [`rms`]: the root of a mean square
+//! - [`derivative`]: central differences
 //! - [`extremes`]: the rows of long columns that a picture needs
 //! - [`envelope`]: what is between the ends of a signal that chatters
 //! - [`short`], [`percent`]: numbers as a person writes them
 
 mod butterworth;
 mod decimate;
+mod derivative;
 mod envelope;
 mod equations;
 mod extremes;
@@ -25,6 +27,7 @@ mod variances;
 
 pub use butterworth::Butterworth;
 pub use decimate::Decimator;
+pub use derivative::derivative;
 pub use envelope::{Span, envelope};
 pub use equations::{Consequences, Determined, Equations};
 pub use extremes::extremes;

@@ -62,7 +62,7 @@ fn log(
         let own: Vec<f64> = model.pattern()[joint].iter().map(|&place| phi[place]).collect();
         let mut torque = vec![0.0; samples];
         rows.torque(joint, &own, &mut torque);
-        let noise = 0.01 * denavit_diagnose::rms(&torque);
+        let noise = 0.01 * denavit_numerics::rms(&torque);
         for (k, torque) in torque.iter_mut().enumerate() {
             let at = |part: usize| motion[part * n + joint][k];
             let load = *torque;

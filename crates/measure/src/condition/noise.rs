@@ -1,6 +1,7 @@
 //! Noise of measured positions, and joints that move no further than it.
 
-use super::{Conditioned, Piece, rate};
+use super::{Conditioned, Piece};
+use crate::JointIndex;
 use crate::log::JointSignals;
 use crate::policy::noise::{GAINS, POSITION, ROUNDING, VELOCITY, WHITE};
 use denavit_numerics::Random;
@@ -67,12 +68,7 @@ impl Conditioned {
             // a constant that was filtered is one but for rounding
             let noise = noise.max(ROUNDING * (mean.abs() + 1e-3));
             let spread = q[range.clone()].iter().map(|q| (q - mean).powi(2)).sum::<f64>();
-            let rates = range.clone().map(|k| match &self.rates {
-                Some([rates, _]) => rates[joint][k],
-                None => rate(q, k) / self.step_s,
-            });
-            let rates = rates.map(|rate| rate * rate).sum::<f64>();
-            let is_slow = (rates / samples).sqrt() <= VELOCITY * of_rate * noise;
+            let is_slow = self.usual(JointIndex(joint), 1) <= VELOCITY * of_rate * noise;
             let is_resting = is_slow && (spread / samples).sqrt() <= POSITION * noise;
             self.resting.push(is_resting);
             if is_resting {

@@ -1,9 +1,10 @@
 //! Where the sign of a joint's rate says little: near its reversals, and while it hardly moves; and
 //! functions of a rate that pass the filter as the torque does.
 
-use super::{Butterworth, Conditioned, Decimator, STENCIL, acceleration, rate};
+use super::{Butterworth, Conditioned, Decimator, STENCIL};
 use crate::policy::reversals::{NOISE, STEPS, STILL, WEIGHED};
 use crate::{JointIndex, SampleIndex};
+use denavit_numerics::rms;
 use std::ops::Range;
 
 /// Periods of the filter's cutoff that a rest takes, at least; and that are left of one whose rows
@@ -13,28 +14,13 @@ const COUNTED: usize = 2;
 
 impl Conditioned {
     fn rate_at(&self, joint: JointIndex, k: usize) -> f64 {
-        match &self.rates {
-            Some([rates, _]) => rates[joint.0][k],
-            None => rate(&self.q[joint.0], k) / self.step_s,
-        }
+        self.moved(joint, 1, k)
     }
 
-    /// Root of the mean square of a joint's acceleration [rad/s^2, m/s^2].
-    fn usual_acceleration(&self, joint: JointIndex) -> f64 {
-        let squares = self.range.clone().map(|k| {
-            let own = match &self.rates {
-                Some([_, accelerations]) => accelerations[joint.0][k],
-                None => acceleration(&self.q[joint.0], k) / (self.step_s * self.step_s),
-            };
-            own * own
-        });
-        (squares.sum::<f64>() / self.range.len().max(1) as f64).sqrt()
-    }
-
-    /// Root of the mean square of a joint's rate [rad/s, m/s].
-    fn usual_rate(&self, joint: JointIndex) -> f64 {
-        let squares = self.range.clone().map(|at| self.rate_at(joint, at).powi(2)).sum::<f64>();
-        (squares / self.range.len().max(1) as f64).sqrt()
+    /// Root of the mean square of a joint's rate (order 1) [rad/s, m/s], or acceleration (order 2)
+    /// [rad/s^2, m/s^2].
+    pub(super) fn usual(&self, joint: JointIndex, order: usize) -> f64 {
+        rms(self.range.clone().map(|k| self.moved(joint, order, k)))
     }
 
     /// A function of a joint's rate at samples of `range`, which must lie within
@@ -86,7 +72,7 @@ impl Conditioned {
     /// filter.
     pub fn near_reversals(&self, joint: JointIndex, times: f64) -> Option<Vec<bool>> {
         let smear = self.filter.as_ref()?.smear();
-        let slowest = times * self.usual_acceleration(joint) * self.step_s * smear as f64;
+        let slowest = times * self.usual(joint, 2) * self.step_s * smear as f64;
         Some(self.slow(joint, slowest, smear))
     }
 
@@ -111,7 +97,7 @@ impl Conditioned {
     /// the first and the last, into which the filter smears what is beside.
     pub fn rests(&self, joint: JointIndex) -> Vec<bool> {
         let Some(filter) = &self.filter else { return vec![false; self.range.len()] };
-        let least = STILL * self.usual_rate(joint);
+        let least = STILL * self.usual(joint, 1);
         let period = 2 * filter.smear();
         let spells = self.slow_spells(joint, filter, least);
         self.within(spells, period, (RESTS - 2) * period)
@@ -124,7 +110,7 @@ impl Conditioned {
     pub fn counted_rests(&self, joint: JointIndex) -> Option<Vec<bool>> {
         let filter = self.filter.as_ref().filter(|_| !self.resting[joint.0])?;
         let period = 2 * filter.smear();
-        let stops_s = self.usual_rate(joint) / self.usual_acceleration(joint);
+        let stops_s = self.usual(joint, 1) / self.usual(joint, 2);
         let stops = (stops_s / self.step_s).ceil().min(self.range.len() as f64) as usize;
         let spells = self.slow_spells(joint, filter, 0.0);
         let rests = self.within(spells, period.max(stops), COUNTED * period);

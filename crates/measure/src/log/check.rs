@@ -68,33 +68,21 @@ fn position(signals: &JointSignals, joint: &RegressionJoint, found: &mut Finding
     let [low, high] = range(&signals.q);
     let column = format!("q_{}", joint.name);
     let largest = low.abs().max(high.abs());
-    match joint.position_limits {
-        Some(limits) => {
-            let slack = 0.02 * (limits[1] - limits[0]);
-            let beyond = [low < limits[0] - slack, high > limits[1] + slack];
-            let reach = limits[0].abs().max(limits[1].abs());
-            if !joint.slides && largest > 1.5 * reach && largest > 6.0 {
-                found.suspicions.push(Suspicion::Degrees {
-                    column,
-                    largest,
-                    factor: 1.0_f64.to_radians(),
-                });
-            } else if beyond[0] || beyond[1] {
-                let value = if beyond[0] { low } else { high };
-                found.suspicions.push(Suspicion::BeyondLimits { column, value, limits });
-            }
+    let limits = joint.position_limits;
+    let reach = limits.map(|[least, most]| 1.5 * least.abs().max(most.abs()));
+    if !joint.slides && largest > reach.map_or(LARGEST_ANGLE_RAD, |reach| reach.max(6.0)) {
+        let (column, factor) = (column.clone(), 1.0_f64.to_radians());
+        found.suspicions.push(Suspicion::Degrees { column, largest, factor });
+    } else if let Some(limits) = limits {
+        let slack = 0.02 * (limits[1] - limits[0]);
+        let is_below = low < limits[0] - slack;
+        if is_below || high > limits[1] + slack {
+            let (column, value) = (column.clone(), if is_below { low } else { high });
+            found.suspicions.push(Suspicion::BeyondLimits { column, value, limits });
         }
-        None if !joint.slides && largest > LARGEST_ANGLE_RAD => {
-            found.suspicions.push(Suspicion::Degrees {
-                column,
-                largest,
-                factor: 1.0_f64.to_radians(),
-            });
-        }
-        None => {}
     }
     if let Some(step) = signals.step {
-        let own = (format!("q_{}", joint.name), step);
+        let own = (column, step);
         // one remark for all joints
         let steps = found.remarks.iter_mut().find_map(|remark| match remark {
             LogRemark::Steps { columns } => Some(columns),

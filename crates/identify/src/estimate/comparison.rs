@@ -5,7 +5,6 @@ use super::contradiction::{Claim, ContradictingLog};
 use super::errors::{Errors, Problem};
 use super::least_squares::Fit;
 use super::left_out::LeftOut;
-use super::noise_bias::{NoiseOfLog, bias_of_some};
 use super::own_estimate::Tested;
 use crate::policy::comparison::APART;
 use denavit_measure::condition::Conditioned;
@@ -23,8 +22,6 @@ pub(super) struct Comparison<'a> {
     pub(super) weights: &'a [Vec<f64>],
     pub(super) fit: Fit<'a>,
     pub(super) left_out: &'a LeftOut,
-    /// What noise of the positions does, by rows that are weighted so.
-    pub(super) noise: (&'a [NoiseOfLog], &'a [Vec<f64>]),
 }
 
 /// What some of the logs say.
@@ -43,27 +40,10 @@ impl Comparison<'_> {
         let (solution, noise) = (settled.solution, settled.noise);
         let (prior, weights) = (&self.fit.options.prior[..], &settled.weights[..]);
         let problem = Problem { condensed: &condensed, weights, prior, solution: &solution };
-        let mut covariance = problem.covariance(Errors::Correlated);
-        let bias = self.bias(logs, &solution, weights);
-        covariance += &bias * bias.transpose();
+        let covariance = problem.covariance(Errors::Correlated);
         let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
         let weights = condensed.noise_of_joints(&noise).into_iter().map(weight).collect();
         Said { solution, covariance, weights }
-    }
-
-    /// What noise of the positions makes of what some logs say.
-    fn bias(&self, logs: &[LogIndex], solution: &Solution, weights: &[Vec<f64>]) -> DVector<f64> {
-        let times = |(&log, weights): (&LogIndex, &Vec<f64>)| {
-            let before = &self.noise.1[log.0];
-            let square = |(now, before): (&f64, &f64)| match *before > 0.0 {
-                true => (now / before).powi(2),
-                false => 0.0,
-            };
-            let times = weights.iter().zip(before).map(square).collect();
-            self.noise.0.get(log.0).map(|noise| (noise, times))
-        };
-        let noise = logs.iter().zip(weights).filter_map(times);
-        bias_of_some(noise, solution, self.fit.start)
     }
 
     /// The logs that contradict what the others say without them.

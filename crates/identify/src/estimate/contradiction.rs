@@ -89,9 +89,8 @@ pub(crate) fn contradicting_logs(
     let fit = Fit { options, start: found.solution.phi.as_slice() };
     let weighted = (is_alike || is_by_row(options)).then(|| fit.settled(condensed, true).weights);
     let weights = weighted.as_ref().unwrap_or(&found.weights);
-    let noise_weights = if is_alike { &found.weights } else { weights };
-    let (left_out, noise) = (&found.left_out, (&found.noise_of_logs[..], &noise_weights[..]));
-    let comparison = Comparison { model, logs, condensed, weights, fit, left_out, noise };
+    let left_out = &found.left_out;
+    let comparison = Comparison { model, logs, condensed, weights, fit, left_out };
     let mut agreeing = shown.to_vec();
     let mut told: Vec<(LogIndex, ContradictingLog)> = Vec::new();
     while agreeing.len() > 1 {

@@ -49,8 +49,6 @@ pub struct NoiseOfLog {
     /// The largest bias of what this log alone says of an entry of phi, in standard errors of
     /// residuals that are independent.
     pub alone: f64,
-    /// What it adds to W^T [W | y] of each joint, as it was weighted.
-    pub(super) of_joints: Vec<DMatrix<f64>>,
 }
 
 /// What noise makes of phi, rows weighted as they are, by factors too, if there are any. `given` is
@@ -69,44 +67,28 @@ pub(super) fn noise_bias(
             (NumberedLog { number: LogIndex(number), log }, &found.weights[number]);
         Noise::of_log(model, own, left_out, weights, longest, factors, &mut random)
     };
-    let of_joints: Vec<Vec<DMatrix<f64>>> = logs.iter().enumerate().map(of_log).collect();
-    let of_logs: Vec<Noise> = of_joints.iter().map(|one| Noise(one.iter().sum())).collect();
+    let of_logs: Vec<Noise> = logs.iter().enumerate().map(of_log).collect();
     let all = Noise(of_logs.iter().map(|one| &one.0).sum());
     let solution = &found.solution;
     let (bias, phi) = all.bias(solution, given);
     let triangles = found.condensed.whole();
-    let of_log = |((log, noise), of_joints): ((usize, &Noise), Vec<DMatrix<f64>>)| {
+    let of_log = |(log, noise): (usize, &Noise)| {
         let (own, weights) = (&triangles[log..=log], &found.weights[log..=log]);
         let bias = noise.lost(solution, &phi);
         if noise.0.amax() == 0.0 {
             // a log whose rows are all left out shows nothing
             let is_empty = triangles[log].iter().all(|one| one.rows() == 0);
             let share = f64::from(u8::from(is_empty));
-            return NoiseOfLog { bias, share, alone: 0.0, of_joints };
+            return NoiseOfLog { bias, share, alone: 0.0 };
         }
         let own = solve(&found.condensed.system(own, weights, &[]), given);
         let alone = in_errors(&own, &noise.bias(&own, given).0);
         let share = noise.share(&own);
         let alone = alone * found.condensed.independent[log].sqrt();
-        NoiseOfLog { bias, share, alone, of_joints }
+        NoiseOfLog { bias, share, alone }
     };
-    let of_logs = of_logs.iter().enumerate().zip(of_joints).map(of_log).collect();
+    let of_logs = of_logs.iter().enumerate().map(of_log).collect();
     NoiseBias { bias, share: all.share(solution), of_logs }
-}
-
-/// What noise of some logs adds to an estimate of theirs, whose rows count so many times as much as
-/// when it was found, by log and joint.
-pub(super) fn bias_of_some<'a>(
-    noise: impl Iterator<Item = (&'a NoiseOfLog, Vec<f64>)>,
-    solution: &Solution,
-    given: &[f64],
-) -> DVector<f64> {
-    let rank = solution.phi.len();
-    let mut all = Noise(DMatrix::zeros(rank, rank + 1));
-    for (one, times) in noise {
-        one.of_joints.iter().zip(times).for_each(|(own, times)| all.0 += own * times);
-    }
-    all.bias(solution, given).0
 }
 
 /// The squares that noise of the positions of a log makes of what phi leaves of each joint's
@@ -202,7 +184,7 @@ fn with_noise(
 struct Noise(DMatrix<f64>);
 
 impl Noise {
-    /// That of each joint of a log, of which so many samples are looked at before decimation.
+    /// That of a log, of which so many samples are looked at before decimation.
     fn of_log(
         model: &RegressionModel,
         own: NumberedLog<'_>,
@@ -211,12 +193,12 @@ impl Noise {
         longest: usize,
         factors: Option<RowFactors<'_>>,
         random: &mut Random,
-    ) -> Vec<DMatrix<f64>> {
+    ) -> Self {
         let NumberedLog { number, log } = own;
         let rank = model.rank();
-        let mut noise = vec![DMatrix::zeros(rank, rank + 1); model.joints.len()];
+        let mut noise = DMatrix::zeros(rank, rank + 1);
         if log.position_noise.iter().all(|noise| *noise == 0.0) {
-            return noise;
+            return Self(noise);
         }
         let rests = &left_out.all_rests(own);
         with_noise(model, log, longest, rests, random, |first, block, noisy, of_all| {
@@ -231,10 +213,10 @@ impl Noise {
                 let counts = left_out.counts(own, joint, first, count);
                 let all = squares.iter_mut().zip(counts.unwrap_or_default());
                 all.filter(|(_, counts)| !counts).for_each(|(square, _)| *square = 0.0);
-                add(&mut noise[joint.0], model, joint, block, noisy, &squares);
+                add(&mut noise, model, joint, block, noisy, &squares);
             }
         });
-        noise
+        Self(noise)
     }
 
     /// The largest eigenvalue of F^T N F: 0 where no direction is determined, all where noise is

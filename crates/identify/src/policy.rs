@@ -240,10 +240,6 @@ pub(crate) mod weights {
     /// Change of phi, in standard errors, below which weights have settled.
     pub(crate) const SETTLED: f64 = 1e-3;
 
-    /// So many independent residuals of a joint are taken from the other logs: few of its own may
-    /// be small by chance.
-    pub(crate) const SHARED: f64 = 4.0;
-
     /// The least share of its independent residuals that a log keeps.
     pub(crate) const LEAST_FREE: f64 = 1e-3;
 }

@@ -304,8 +304,7 @@ impl Fit<'_> {
         self.reweighting(model, rows, found, |found, round| {
             // medians jump: with scales that stay the weights settle
             if round < ROUNDS_OF_SCALES {
-                let scales = scales(model, rows, found.solution.phi.as_slice());
-                found.noise = found.condensed.steadied(&scales, &found.solution, &found.weights);
+                found.noise = scales(model, rows, found.solution.phi.as_slice());
             }
             (Box::new(factors_of_loss(found, loss)), found.noise.clone())
         })

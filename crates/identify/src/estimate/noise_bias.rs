@@ -70,7 +70,8 @@ pub(super) fn noise_bias(
     let of_logs: Vec<Noise> = logs.iter().enumerate().map(of_log).collect();
     let all = Noise(of_logs.iter().map(|one| &one.0).sum());
     let solution = &found.solution;
-    let (bias, phi) = all.bias(solution, given);
+    let bias = all.bias(solution);
+    let phi = &solution.phi - &bias;
     let triangles = found.condensed.whole();
     let of_log = |(log, noise): (usize, &Noise)| {
         let (own, weights) = (&triangles[log..=log], &found.weights[log..=log]);
@@ -82,7 +83,7 @@ pub(super) fn noise_bias(
             return NoiseOfLog { bias, share, alone: 0.0 };
         }
         let own = solve(&found.condensed.system(own, weights, &[]), given);
-        let alone = in_errors(&own, &noise.bias(&own, given).0);
+        let alone = in_errors(&own, &noise.bias(&own));
         let share = noise.share(&own);
         let alone = alone * found.condensed.independent[log].sqrt();
         NoiseOfLog { bias, share, alone }
@@ -243,20 +244,13 @@ impl Noise {
     }
 
     /// phi^ - phi of phi^ = phi - C (N phi + known): where noise makes most of W, phi^ is a small
-    /// part of phi. Where it makes nearly all of W the rest of it hangs on the last digits of N: of
-    /// that and of what the model's values would lose, the larger one, with the phi it is of.
-    fn bias(&self, solution: &Solution, given: &[f64]) -> (DVector<f64>, DVector<f64>) {
+    /// part of phi.
+    fn bias(&self, solution: &Solution) -> DVector<f64> {
         let rank = self.0.nrows();
         let share = &solution.factor * solution.factor.tr_mul(&self.0.columns(0, rank));
         let left = DMatrix::identity(rank, rank) - share;
         let off = self.lost(solution, &solution.phi);
-        let by_estimate = left.lu().solve(&off).unwrap_or(off);
-        let given = DVector::from_column_slice(given);
-        let by_model = self.lost(solution, &given);
-        match in_errors(solution, &by_model) > in_errors(solution, &by_estimate) {
-            true => (by_model, given),
-            false => (by_estimate.clone(), &solution.phi - by_estimate),
-        }
+        left.lu().solve(&off).unwrap_or(off)
     }
 }
 

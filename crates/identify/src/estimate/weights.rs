@@ -8,7 +8,7 @@
 use super::condensed::Condensed;
 use super::least_squares::Fit;
 pub(super) use crate::policy::weights::SETTLED;
-use crate::policy::weights::{LEAST_FREE, SHARED};
+use crate::policy::weights::LEAST_FREE;
 use denavit_measure::JointIndex;
 use denavit_numerics::least_squares::{Solution, Triangle};
 
@@ -172,46 +172,30 @@ impl Condensed {
         triangles.iter().map(of_log).collect()
     }
 
-    /// Independent residuals of each joint in each log, without what the estimate takes of them:
-    /// trace of w^2 W F F^T W^T.
-    fn free(&self, triangles: &[Vec<Triangle>], solution: &Solution, weights: &ByLog) -> ByLog {
-        let factor = &solution.factor;
-        let of = |log: usize, joint: usize| {
-            let (pattern, triangle) = (&self.pattern[joint], &triangles[log][joint]);
-            let all = self.independent[log] * triangle.rows() as f64;
-            let own = factor.select_rows(pattern);
-            let r = triangle.matrix().view((0, 0), (pattern.len(), pattern.len()));
-            let taken = weights[log][joint].powi(2) * (r * own).norm_squared();
-            (all - taken).max(LEAST_FREE * all)
-        };
-        let joints = 0..self.pattern.len();
-        let of_log = |log: usize| joints.clone().map(|joint| of(log, joint)).collect();
-        (0..triangles.len()).map(of_log).collect()
-    }
-
-    /// The deviation of each joint's residuals in each log.
+    /// The deviation of each joint's residuals in each log, of as many independent ones as there
+    /// are, without what the estimate takes of them: trace of w^2 W F F^T W^T.
     fn deviations(
         &self,
         triangles: &[Vec<Triangle>],
         solution: &Solution,
         weights: &ByLog,
     ) -> ByLog {
-        let free = self.free(triangles, solution, weights);
-        let mut sums = self.squares(triangles, solution.phi.as_slice());
-        for (sums, share) in sums.iter_mut().zip(&self.independent) {
-            sums.iter_mut().for_each(|sum| *sum *= share);
-        }
-        steady(&sums, &free)
-    }
-
-    /// Deviations of scales that were found otherwise, each joint in each log.
-    pub(super) fn steadied(&self, scales: &ByLog, solution: &Solution, weights: &ByLog) -> ByLog {
-        let free = self.free(&self.whole(), solution, weights);
-        let of_log = |(scales, free): (&Vec<f64>, &Vec<f64>)| {
-            scales.iter().zip(free).map(|(scale, free)| scale * scale * free).collect()
+        let of = |log: usize, joint: usize| {
+            let (pattern, triangle) = (&self.pattern[joint], &triangles[log][joint]);
+            let all = self.independent[log] * triangle.rows() as f64;
+            if all == 0.0 {
+                return 0.0;
+            }
+            let own = solution.factor.select_rows(pattern);
+            let r = triangle.matrix().view((0, 0), (pattern.len(), pattern.len()));
+            let taken = weights[log][joint].powi(2) * (r * own).norm_squared();
+            let free = (all - taken).max(LEAST_FREE * all);
+            let phi = self.of_joint(JointIndex(joint), solution.phi.as_slice());
+            (self.independent[log] * triangle.squares(&phi) / free).sqrt()
         };
-        let sums: ByLog = scales.iter().zip(&free).map(of_log).collect();
-        steady(&sums, &free)
+        let joints = 0..self.pattern.len();
+        let of_log = |log: usize| joints.clone().map(|joint| of(log, joint)).collect();
+        (0..triangles.len()).map(of_log).collect()
     }
 
     /// The deviation of each joint's residuals in all logs, of those in each; 0 where no torque was
@@ -242,31 +226,6 @@ impl Condensed {
         };
         self.of_rows_alike().into_iter().zip(noise.iter().zip(triangles)).map(of_log).collect()
     }
-}
-
-/// Deviations of sums of squares with so many independent residuals, by log and joint; of several
-/// logs with some more, that have the noise of this joint as the best logs show it.
-fn steady(sums: &ByLog, free: &ByLog) -> ByLog {
-    let joints = 0..sums.first().map_or(0, Vec::len);
-    let shared = |joint: usize| {
-        let logs = sums.iter().zip(free).map(|(sums, free)| (sums[joint], free[joint]));
-        let (count, certainty) = logs
-            .filter(|(_, free)| *free > 0.0)
-            .fold((0.0, 0.0), |(count, certainty), (sum, free)| {
-                (count + free, certainty + free * free / sum)
-            });
-        if certainty > 0.0 { count / certainty } else { 0.0 }
-    };
-    let shared: Vec<f64> = joints.map(shared).collect();
-    let count = if sums.len() > 1 { SHARED } else { 0.0 };
-    let of_log = |(sums, free): (&Vec<f64>, &Vec<f64>)| {
-        let of = |((sum, free), shared): ((&f64, &f64), &f64)| match *free > 0.0 {
-            true => ((sum + count * shared) / (free + count)).sqrt(),
-            false => 0.0,
-        };
-        sums.iter().zip(free).zip(&shared).map(of).collect()
-    };
-    sums.iter().zip(free).map(of_log).collect()
 }
 
 /// The largest change of an entry of phi, in its standard errors.

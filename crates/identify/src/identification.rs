@@ -8,7 +8,7 @@ use super::estimate::{
     consistent, contradicting_logs, convergence, estimate, filter_errors, lacking, long_enough,
     noise_in_torques, parameters, unexplained_joints, validate,
 };
-use super::noisy_logs::{MOST, biased_alone, biasing_logs, noisy_logs, shown_logs};
+use super::noisy_logs::{MOST, biasing_logs, noisy_logs, shown_logs};
 use super::odd_log::odd_log;
 use crate::policy::identification::{FAR, NOISY, OTHER, SHORT, SMEARED};
 use denavit_measure::condition::Conditioned;
@@ -125,8 +125,6 @@ pub struct Estimated {
     /// For each log for the estimate whether its noise of positions biases parameters, so that it
     /// needs a lower filter.
     pub biasing_logs: Vec<bool>,
-    /// For each of them whether it would need one if it were alone.
-    pub biased_alone: Vec<bool>,
     left: Validation,
     found: Estimate,
 }
@@ -150,7 +148,6 @@ pub fn estimated(request: Request<'_>) -> Result<Estimated, Error> {
     Ok(Estimated {
         filter_error: filter_error(model, train, phi, &left),
         biasing_logs: biasing_logs(model, &listed, &found),
-        biased_alone: biased_alone(&found),
         parameters: listed,
         left,
         found,

@@ -1,6 +1,6 @@
 //! Logs of which noise of the positions makes most, and those that bias parameters by it.
 
-use super::estimate::{BIASING, Estimate, IdentifiedParameter, NoiseOfLog};
+use super::estimate::{Estimate, IdentifiedParameter, NoiseOfLog};
 pub(super) use crate::policy::noisy_logs::MOST;
 use crate::policy::noisy_logs::SHARE;
 use denavit_measure::LogIndex;
@@ -21,14 +21,6 @@ pub(super) fn shown_logs(logs: usize, found: &Estimate) -> Vec<LogIndex> {
     let all = (0..logs).map(LogIndex);
     let shown: Vec<LogIndex> = all.clone().filter(|&log| share(log) <= MOST).collect();
     if shown.is_empty() { all.collect() } else { shown }
-}
-
-/// For each log beside others whether it would need a lower filter if it were alone: noise makes
-/// most of it, or biases what it says.
-pub(super) fn biased_alone(found: &Estimate) -> Vec<bool> {
-    let is_beside = found.noise_of_logs.len() > 1;
-    let is_biased = |one: &NoiseOfLog| is_beside && (one.share > MOST || one.alone > BIASING);
-    found.noise_of_logs.iter().map(is_biased).collect()
 }
 
 /// For each log whether it has its share of a bias, so that it needs a lower filter; all if noise

@@ -57,7 +57,6 @@ pub use noise_bias::NoiseOfLog;
 pub(crate) use noise_bias::noise_in_torques;
 pub(crate) use nominal::{is_of_joints, nominal_values};
 pub(crate) use one_equation::OneEquation;
-pub(crate) use report::BIASING;
 pub use report::{Convergence, IdentifiedParameter, Status, convergence, parameters};
 pub use robust::Loss;
 pub use rows::{Block, BlockMaker};

@@ -46,9 +46,6 @@ pub struct NoiseOfLog {
     pub bias: DVector<f64>,
     /// The largest share of noise in what this log alone says of a direction of phi, from 0 to 1.
     pub share: f64,
-    /// The largest bias of what this log alone says of an entry of phi, in standard errors of
-    /// residuals that are independent.
-    pub alone: f64,
 }
 
 /// What noise makes of phi, rows weighted as they are, by factors too, if there are any. `given` is
@@ -80,13 +77,10 @@ pub(super) fn noise_bias(
             // a log whose rows are all left out shows nothing
             let is_empty = triangles[log].iter().all(|one| one.rows() == 0);
             let share = f64::from(u8::from(is_empty));
-            return NoiseOfLog { bias, share, alone: 0.0 };
+            return NoiseOfLog { bias, share };
         }
         let own = solve(&found.condensed.system(own, weights, &[]), given);
-        let alone = in_errors(&own, &noise.bias(&own));
-        let share = noise.share(&own);
-        let alone = alone * found.condensed.independent[log].sqrt();
-        NoiseOfLog { bias, share, alone }
+        NoiseOfLog { bias, share: noise.share(&own) }
     };
     let of_logs = of_logs.iter().enumerate().map(of_log).collect();
     NoiseBias { bias, share: all.share(solution), of_logs }
@@ -278,11 +272,4 @@ fn add(
             }
         }
     }
-}
-
-/// The largest bias, in standard errors of residuals that are independent.
-fn in_errors(solution: &Solution, bias: &DVector<f64>) -> f64 {
-    let own = solution.factor.row_iter().map(|row| row.norm());
-    let ratios = bias.iter().zip(own).filter(|(_, error)| *error > 0.0);
-    ratios.map(|(bias, error)| bias.abs() / error).fold(0.0, f64::max)
 }

@@ -2,8 +2,8 @@
 
 use super::half_cutoff::HalfCutoff;
 use super::least_squares::Estimate;
-pub(crate) use crate::policy::report::BIASING;
-use crate::policy::report::{DEAD_SHARE, LIKELY, SURE};
+pub(super) use crate::policy::report::BIASING;
+use crate::policy::report::{DEAD_SHARE, SURE};
 use denavit_measure::PartIndex;
 use denavit_numerics::interval_factor;
 use denavit_numerics::least_squares::solve;
@@ -81,11 +81,6 @@ impl IdentifiedParameter {
         let own = self.half_cutoff.map_or(self.std, |one| Some(one.own_std));
         let bias = self.noise_bias.zip(self.std).zip(own);
         bias.is_some_and(|((bias, std), own)| bias.abs() * std > BIASING * own)
-    }
-
-    /// Whether it seems to change with half the cutoff: a lower filter may be better.
-    pub fn may_change(&self) -> bool {
-        self.half_cutoff.is_some_and(|one| one.is_beyond(LIKELY))
     }
 }
 

@@ -6,7 +6,7 @@ use super::estimate::{
     Consistent, ContradictingLog, Convergence, Estimate, HeldOut, IdentifiedParameter, Judgement,
     Options, ShownLogs, SlowRows, Standing, Status, Unexplained, Validation, biased_frictions,
     consistent, contradicting_logs, convergence, estimate, filter_errors, lacking, long_enough,
-    noise_in_torques, parameters, unexplained_joints, validate,
+    noise_of_positions, parameters, unexplained_joints, validate,
 };
 use super::noisy_logs::{MOST, biasing_logs, noisy_logs, shown_logs};
 use super::odd_log::odd_log;
@@ -155,18 +155,10 @@ pub fn estimated(request: Request<'_>) -> Result<Estimated, Error> {
 }
 
 impl Estimated {
-    /// Whether a log for validation needs a lower filter, if it is not the motion that is too fast
-    /// for the one that it has.
+    /// Whether a log for validation needs a lower filter.
     pub fn is_noisy(&self, model: &RegressionModel, log: &Conditioned) -> bool {
-        let noise = noise_in_torques(model, log, self.found.solution.phi.as_slice());
+        let noise = noise_of_positions(model, &[log], self.found.solution.phi.as_slice());
         noise.into_iter().any(|share| share > NOISY)
-    }
-
-    /// Whether the filter of a log for validation itself makes a part of what is left.
-    pub fn is_smeared(&self, model: &RegressionModel, log: &Conditioned) -> bool {
-        let phi = self.found.solution.phi.as_slice();
-        let log = std::slice::from_ref(log);
-        filter_error(model, log, phi, &validate(model, phi, log)).is_some()
     }
 
     /// All that there is to say of it and of the logs that it is from.

@@ -167,10 +167,6 @@ pub(crate) mod report {
 
 /// `estimate/rests.rs`: Rests of joints that move in between: rest rows kept, one free offset each.
 pub(crate) mod rests {
-    /// How much the torque of a joint at rest must be like the load that the nominal parameters
-    /// make of the motion of the others, as a correlation.
-    pub(crate) const ALIKE: f64 = 0.7;
-
     /// The variance of the residual at rest over that of the residual of an estimate from motion
     /// alone, above which something else than the motor holds the joint.
     pub(crate) const HELD: f64 = 4.0;

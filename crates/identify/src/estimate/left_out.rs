@@ -119,7 +119,7 @@ impl LeftOut {
     }
 
     /// What the options ask for before anything is known of friction; by default where the sign of
-    /// a rate is not known, but rests that the torque follows the load in, if enough is left.
+    /// a rate is not known, but rests, if enough is left.
     pub(super) fn asked(model: &RegressionModel, logs: &[Conditioned], options: &Options) -> Self {
         let mut asked = Self::unsure(model, logs, options);
         if options.slow == SlowRows::Biasing {

@@ -3,24 +3,23 @@
 //! While a joint rests its friction is anything that holds it, and not the sign of its rate. Where
 //! its motor carries the load of the motion of the others, which shows parameters that nothing else
 //! may show, friction is a constant of the rest, and the rows count beside it. Where stiction or a
-//! brake carries it, the torque does not follow the load, or an estimate leaves more of it than
-//! while the joint moves: such rows are left out.
+//! brake carries it, an estimate leaves more of it than while the joint moves: such rows are left
+//! out.
 
 use super::left_out::{LeftOut, NumberedLog};
 use super::left_over::Left;
-use super::nominal::nominal_values;
-use super::rows::BlockMaker;
-use crate::policy::rests::{ALIKE, HELD, OF_FRICTION, WORST};
+use crate::policy::rests::{HELD, OF_FRICTION, WORST};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
 use std::ops::Range;
 
 impl LeftOut {
-    /// Counts rests in which the torque of a joint follows the load that the model's values make.
+    /// Counts rests of joints whose torque was measured.
     pub(super) fn add_rests(&mut self, model: &RegressionModel, logs: &[Conditioned]) {
-        let values = nominal_values(model).filter(|_| model.law == CoulombLaw::Sign);
-        let Some(values) = values else { return };
+        if model.law != CoulombLaw::Sign {
+            return;
+        }
         for (number, log) in logs.iter().enumerate() {
             let awake = |joint: usize| {
                 self.rows[number][joint].as_ref().filter(|_| log.torque[joint].is_some())?;
@@ -28,31 +27,7 @@ impl LeftOut {
                 Some(rests.into_iter().map(|rests| !rests).collect())
             };
             self.awake[number] = (0..log.joints()).map(awake).collect();
-            let follows =
-                self.follows(model, NumberedLog { number: LogIndex(number), log }, &values);
-            for (awake, follows) in self.awake[number].iter_mut().zip(follows) {
-                awake.take_if(|_| !follows);
-            }
         }
-    }
-
-    /// Whether the torque of each joint follows the load while it rests.
-    fn follows(&self, model: &RegressionModel, own: NumberedLog<'_>, values: &[f64]) -> Vec<bool> {
-        let rests = self.all_rests(own);
-        // the squares of torque and load, and their product
-        let mut sums = vec![[0.0; 3]; rests.len()];
-        let mut maker = BlockMaker::resting(model, own.log, &rests);
-        maker.for_each_left(values, |joint, sample, [_, torque, left]| {
-            if rests[joint.0].iter().any(|rest| rest.contains(&sample.0)) {
-                let load = torque - left;
-                let squares = [torque * torque, load * load, torque * load];
-                sums[joint.0].iter_mut().zip(squares).for_each(|(sum, one)| *sum += one);
-            }
-        });
-        let follows = |[torque, load, both]: [f64; 3]| {
-            both > 0.0 && both * both > ALIKE.powi(2) * torque * load
-        };
-        sums.into_iter().map(follows).collect()
     }
 
     /// The samples in which a joint rests and counts, of those that are left after decimation.

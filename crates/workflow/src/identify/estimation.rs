@@ -130,41 +130,19 @@ impl Estimation<'_> {
     ) -> Result<(), Error> {
         let train = read.train.len();
         halvings.resize(read.logs().len(), 0);
-        let mut is_open = vec![true; read.validate.len()];
         loop {
-            let asks =
-                |(log, is_open): (_, &bool)| *is_open && found.is_noisy(self.work.model, log);
-            let others = read.validate.iter().zip(&is_open).map(asks);
+            let others = read.validate.iter().map(|log| found.is_noisy(self.work.model, log));
             let asking: Vec<bool> = std::iter::repeat_n(false, train).chain(others).collect();
             let lower = self.work.options.conditions.lower(&read.logs(), &halvings, &asking);
-            let Some(mut lower) = lower else { return Ok(()) };
-            if !watched.begins(Stage::ReadingHeldOutAgain) {
+            let Some(lower) = lower else { return Ok(()) };
+            let again = Stage::ReadingHeldOutAgain;
+            if !watched.begins(again) {
                 return Ok(());
             }
-            self.read_held_out(read, &lower[train..], watched)?;
-            for (at, is_open) in is_open.iter_mut().enumerate().filter(|(_, is_open)| **is_open) {
-                let is_lowered = lower[train + at] != halvings[train + at];
-                if is_lowered && found.is_smeared(self.work.model, &read.validate[at]) {
-                    // worse than the noise that it takes away
-                    (lower[train + at], *is_open) = (halvings[train + at], false);
-                }
-            }
-            if is_open.contains(&false) {
-                self.read_held_out(read, &lower[train..], watched)?;
-            }
+            let count = self.work.logs.held_out.len();
+            read.held_out(self.work, &lower[train..], &mut Reading::needed(watched, again, count))?;
             halvings = lower;
         }
-    }
-
-    fn read_held_out(
-        &self,
-        read: &mut Read,
-        halvings: &[u32],
-        watched: &mut Watched<'_>,
-    ) -> Result<(), Error> {
-        let count = self.work.logs.held_out.len();
-        let mut reading = Reading::needed(watched, Stage::ReadingHeldOutAgain, count);
-        read.held_out(self.work, halvings, &mut reading)
     }
 
     /// The next lower filters of logs, if noise of their positions biases parameters.

@@ -110,24 +110,14 @@ impl Misreading {
         }
     }
 
-    /// Whether it makes less of noise of the positions, whatever is true,
+    /// Whether it makes less of noise of the positions, or of their derivatives, whatever is true.
     pub(super) fn hides_noise(self) -> bool {
-        self.factor_of_noise() < 1.0
-    }
-
-    /// or more of it.
-    pub(super) fn makes_noise(self) -> bool {
-        self.factor_of_noise() > 1.0
-    }
-
-    /// By what noise of positions, or of their derivatives, is multiplied.
-    fn factor_of_noise(self) -> f64 {
         match self {
-            Self::Time(factor) => 1.0 / factor,
+            Self::Time(factor) => factor > 1.0,
             Self::Angles(factor) | Self::Lengths(factor) | Self::Position(_, factor) => {
-                factor.abs()
+                factor.abs() < 1.0
             }
-            _ => 1.0,
+            _ => false,
         }
     }
 

@@ -132,39 +132,10 @@ pub(crate) fn misread_apart(
     logs.iter().flat_map(of).collect()
 }
 
-/// The same of logs that are all misread alike. Motion that is read too slow has so little noise
-/// that its filter may be far too high for what it is: what makes more of noise is looked for
-/// behind lower filters, too, unless something is sure.
+/// The same of logs that are all misread alike.
 fn misread_alike(
     model: &RegressionModel,
     logs: &[&Conditioned],
-    values: Option<GivenValues<'_>>,
-) -> Vec<MisreadColumns> {
-    let mut found = misread_as_filtered(model, logs, false, values);
-    let mut lower: Vec<Conditioned> = Vec::new();
-    for _ in 0..policy::HALVINGS {
-        if found.iter().any(|one| one.is_sure) {
-            break;
-        }
-        let before = if lower.is_empty() { logs.to_vec() } else { lower.iter().collect() };
-        lower = Conditioned::behind_half_the_cutoff(&before, policy::HALVED_SAMPLES);
-        if lower.is_empty() {
-            break;
-        }
-        let lower: Vec<&Conditioned> = lower.iter().collect();
-        let told = misread_as_filtered(model, &lower, true, values);
-        if found.is_empty() || told.iter().any(|one| one.is_sure) {
-            found = told;
-        }
-    }
-    found
-}
-
-/// The same of logs behind the filters that they have, or behind lower ones.
-fn misread_as_filtered(
-    model: &RegressionModel,
-    logs: &[&Conditioned],
-    is_lower: bool,
     values: Option<GivenValues<'_>>,
 ) -> Vec<MisreadColumns> {
     let step_s = logs.iter().map(|log| log.step_s).fold(f64::INFINITY, f64::min);
@@ -182,7 +153,7 @@ fn misread_as_filtered(
         return Vec::new();
     }
     let noise = [noise.unwrap_or_default(), Vec::new()];
-    let mut search = Search { sample, beliefs, noise, latest, step_s, is_lower };
+    let mut search = Search { sample, beliefs, noise, latest, step_s };
     search.learn_noise(logs);
     let mut all: Vec<MisreadColumns> = Vec::new();
     let mut reading = Reading::straight(joints);

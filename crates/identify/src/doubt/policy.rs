@@ -59,12 +59,6 @@ pub(super) const SAMPLES: [usize; 2] = [1024, 8192];
 /// See [`SAMPLES`].
 pub(super) const SAMPLES_READ: usize = 600_000;
 
-/// How often the cutoff is halved to look for readings that make more of noise, and samples of all
-/// logs that are looked at then, before decimation.
-pub(super) const HALVINGS: usize = 2;
-/// See [`HALVINGS`].
-pub(super) const HALVED_SAMPLES: usize = 200_000;
-
 /// The least share of its samples in which the sign of a joint's velocity must be known for the
 /// others to be left out.
 pub(super) const SIGNED: f64 = 0.1;

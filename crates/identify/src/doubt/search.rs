@@ -23,8 +23,6 @@ pub(super) struct Search<'a> {
     pub(super) latest: isize,
     /// Seconds of a sample.
     pub(super) step_s: f64,
-    /// Whether nothing is tried but what makes more of noise.
-    pub(super) is_lower: bool,
 }
 
 /// A mistake that explains the logs better.
@@ -112,9 +110,7 @@ impl Search<'_> {
             let other = self.other(&reading.with(one, &self.sample.model.joints), &straight);
             found.push(Found::new(one, &straight, &other, None));
         }
-        if !self.is_lower {
-            found.extend(self.along_lines(reading, &straight, is_noisy));
-        }
+        found.extend(self.along_lines(reading, &straight, is_noisy));
         let best = found.into_iter().max_by(|a, b| a.log_odds.total_cmp(&b.log_odds))?;
         (best.log_odds > NAMED).then_some(best)
     }
@@ -125,7 +121,6 @@ impl Search<'_> {
         let mut tried = hypotheses(model, &|joint| fit[joint.0].is_some());
         tried.retain(|one| reading.with(*one, &model.joints) != *reading);
         tried.retain(|one| !(is_noisy && one.hides_noise()));
-        tried.retain(|one| !self.is_lower || one.makes_noise());
         // nothing is seen of a position that does not change
         tried.retain(|one| one.positions_of().iter().all(|&joint| self.sample.moves(joint)));
         let Some(values) = self.beliefs.values.clone() else { return tried };

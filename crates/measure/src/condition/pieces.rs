@@ -53,15 +53,6 @@ impl Conditioned {
         }
     }
 
-    /// Logs, or pieces of those that have more than their part of so many samples before
-    /// decimation, behind filters with half the cutoff of their own; nothing if one is too short.
-    pub fn behind_half_the_cutoff(logs: &[&Self], most: usize) -> Vec<Self> {
-        let pieces = |log: &&Self| log.pieces(most / logs.len().max(1));
-        let all = logs.iter().flat_map(|log| pieces(log).into_iter().map(move |one| (log, one)));
-        let halved = all.map(|(log, piece)| log.halved(piece).map(|[_, halved]| halved));
-        halved.collect::<Option<Vec<Self>>>().unwrap_or_default()
-    }
-
     /// A piece without more of its edges than a filter of half the cutoff leaves, as it is and
     /// after that filter; none if that leaves nothing.
     pub fn halved(&self, piece: Piece) -> Option<[Self; 2]> {

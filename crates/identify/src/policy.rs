@@ -165,21 +165,6 @@ pub(crate) mod report {
     pub(crate) const SURE: f64 = 3.5;
 }
 
-/// `estimate/rests.rs`: Rests of joints that move in between: rest rows kept, one free offset each.
-pub(crate) mod rests {
-    /// The variance of the residual at rest over that of the residual of an estimate from motion
-    /// alone, above which something else than the motor holds the joint.
-    pub(crate) const HELD: f64 = 4.0;
-
-    /// What stiction holds is a share of Coulomb friction; of less an estimate that is not the
-    /// last one, with more noise of positions, may be wrong.
-    pub(crate) const OF_FRICTION: f64 = 0.1;
-
-    /// Of rests in which something holds the joint those are left out first of which at least this
-    /// share of the most is left.
-    pub(crate) const WORST: f64 = 0.25;
-}
-
 /// `estimate/robust.rs`: Weights that outliers lose (iteratively reweighted least squares; Huber
 /// 1964, Beaton and Tukey 1974).
 pub(crate) mod robust {

@@ -138,8 +138,7 @@ impl Condensed {
             }
             let parts = PartsOfLog { begin, count, length };
             let own = NumberedLog { number, log };
-            let rests = left_out.all_rests(own);
-            BlockMaker::resting(model, log, &rests).for_each(|block| {
+            BlockMaker::new(model, log).for_each(|block| {
                 for joint in (0..condensed.pattern.len()).map(JointIndex) {
                     let Some(columns) = rows(number, block, joint) else { continue };
                     let counts = left_out.counts(own, joint, block.first, block.samples);

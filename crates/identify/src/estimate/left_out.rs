@@ -1,7 +1,7 @@
 //! Rows that are left out: where a joint turns round or hardly moves, its friction is not what the
 //! sign of its rate says, and the filter smears that over its own time.
 
-use super::least_squares::{Method, Options};
+use super::least_squares::Options;
 use super::rows::BlockMaker;
 use crate::policy::left_out::{BIAS, LEAST, NOISE};
 use denavit_measure::condition::{Butterworth, Conditioned};
@@ -100,17 +100,13 @@ pub(super) struct NumberedLog<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LeftOut {
     pub(super) rows: Vec<Vec<Option<Vec<bool>>>>,
-    /// For each log and joint whether samples before decimation are none of a rest whose rows count
-    /// beside a constant, though they are left out else; none where there is no such rest.
-    pub(super) awake: Vec<Vec<Option<Vec<bool>>>>,
     /// Joints whose rows near reversals are left out, and the times they were widened to.
     widened: Vec<(JointIndex, f64)>,
 }
 
 impl LeftOut {
     fn of(rows: Vec<Vec<Option<Vec<bool>>>>) -> Self {
-        let awake = rows.iter().map(|of_log| vec![None; of_log.len()]).collect();
-        Self { rows, awake, widened: Vec::new() }
+        Self { rows, widened: Vec::new() }
     }
 
     /// Nothing.
@@ -119,20 +115,16 @@ impl LeftOut {
     }
 
     /// What the options ask for before anything is known of friction; by default where the sign of
-    /// a rate is not known, but rests, if enough is left.
+    /// a rate is not known, if enough is left.
     pub(super) fn asked(model: &RegressionModel, logs: &[Conditioned], options: &Options) -> Self {
         let mut asked = Self::unsure(model, logs, options);
         if options.slow == SlowRows::Biasing {
-            // instruments have no rows of rests
-            if options.method != Method::Instrumental {
-                asked.add_rests(model, logs);
-            }
             (0..logs.len()).map(LogIndex).for_each(|log| asked.keep_enough(log, logs));
         }
         asked
     }
 
-    /// The same, rests among them, however little that leaves.
+    /// The same, however little that leaves.
     fn unsure(model: &RegressionModel, logs: &[Conditioned], options: &Options) -> Self {
         let of_log = |log: &Conditioned| -> Vec<Option<Vec<bool>>> {
             let slowest: Vec<f64> = match options.slow {
@@ -187,7 +179,6 @@ impl LeftOut {
             let kept = counts.into_iter().filter(|counts| *counts).count() as f64;
             if kept < LEAST * log.samples() as f64 {
                 self.rows[number.0][joint.0] = None;
-                self.awake[number.0][joint.0] = None;
             }
         }
     }
@@ -218,7 +209,7 @@ impl LeftOut {
         logs: &[Conditioned],
         options: &Options,
     ) -> Self {
-        let mut sure = self.of_others(model, logs, options).without_rests();
+        let mut sure = self.of_others(model, logs, options);
         let coulomb = model.coulomb().iter().filter(|_| model.law == CoulombLaw::Sign);
         for &(joint, _) in coulomb {
             for (log, rows) in logs.iter().zip(&mut sure.rows) {
@@ -248,14 +239,12 @@ impl LeftOut {
         places: &[(LogIndex, Range<usize>)],
         beside: impl Fn(LogIndex) -> usize,
     ) -> Self {
-        let of = |all: &[Vec<Option<Vec<bool>>>], (number, range): &(LogIndex, Range<usize>)| {
+        let of = |(number, range): &(LogIndex, Range<usize>)| {
             let beside = beside(*number);
             let part = |all: &Vec<bool>| wider(all, beside)[range.clone()].to_vec();
-            all[number.0].iter().map(|one| one.as_ref().map(part)).collect()
+            self.rows[number.0].iter().map(|one| one.as_ref().map(part)).collect()
         };
-        let mut those = Self::of(places.iter().map(|place| of(&self.rows, place)).collect());
-        those.awake = places.iter().map(|place| of(&self.awake, place)).collect();
-        those
+        Self::of(places.iter().map(of).collect())
     }
 
     /// Leaves out a joint's rows near reversals; not if that leaves too few.
@@ -265,13 +254,11 @@ impl LeftOut {
             let before = before[joint.0].iter().flatten();
             near.iter_mut().zip(before).for_each(|(near, before)| *near |= before);
         }
-        let counted = |((number, log), near): ((usize, &Conditioned), &Vec<bool>)| {
+        let counted = |(log, near): (&Conditioned, &Vec<bool>)| {
             let counts = log.counts(near, SampleIndex(0), log.samples()).into_iter();
-            let own = NumberedLog { number: LogIndex(number), log };
-            let rests: usize = self.rests(own, joint).iter().map(Range::len).sum();
-            counts.filter(|counts| *counts).count() + rests
+            counts.filter(|counts| *counts).count()
         };
-        let kept: usize = logs.iter().enumerate().zip(&near).map(counted).sum();
+        let kept: usize = logs.iter().zip(&near).map(counted).sum();
         let all: usize = logs.iter().map(Conditioned::samples).sum();
         let is_enough = kept as f64 >= LEAST * all as f64;
         if is_enough {
@@ -284,7 +271,7 @@ impl LeftOut {
     }
 
     /// Calls `visit` with joint, sample and what phi leaves of the torque of every row of a log,
-    /// and whether it counts; rests that count are beside a constant.
+    /// and whether it counts.
     pub(super) fn for_each_left(
         &self,
         model: &RegressionModel,
@@ -295,15 +282,14 @@ impl LeftOut {
         let all =
             |joint: usize| self.counts(own, JointIndex(joint), SampleIndex(0), own.log.samples());
         let counts: Vec<Option<Vec<bool>>> = (0..model.joints.len()).map(all).collect();
-        let mut maker = BlockMaker::resting(model, own.log, &self.all_rests(own));
-        maker.for_each_left(phi, |joint, sample, [.., left]| {
+        BlockMaker::new(model, own.log).for_each_left(phi, |joint, sample, [.., left]| {
             let counts = counts[joint.0].as_ref().is_none_or(|counts| counts[sample.0]);
             visit(joint, sample, left, counts);
         });
     }
 
-    /// Which of so many samples that are left after decimation count for a joint, from `first` on,
-    /// those of rests beside a constant; none where all do.
+    /// Which of so many samples that are left after decimation count for a joint, from `first` on;
+    /// none where all do.
     pub(super) fn counts(
         &self,
         NumberedLog { number, log }: NumberedLog<'_>,
@@ -312,11 +298,6 @@ impl LeftOut {
         samples: usize,
     ) -> Option<Vec<bool>> {
         let left_out = self.rows[number.0][joint.0].as_ref()?;
-        let mut counts = log.counts(left_out, first, samples);
-        if let Some(awake) = &self.awake[number.0][joint.0] {
-            let rests = log.counts(awake, first, samples);
-            counts.iter_mut().zip(rests).for_each(|(counts, rests)| *counts |= rests);
-        }
-        Some(counts)
+        Some(log.counts(left_out, first, samples))
     }
 }

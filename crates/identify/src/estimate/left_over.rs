@@ -2,11 +2,10 @@
 
 use super::least_squares::Estimate;
 use super::left_out::{LeftOut, NumberedLog};
-use super::rows::BlockMaker;
 use super::unexplained::{ShownLogs, samples_of};
 use crate::policy::left_over::{NO_NOISE, SAID};
 use denavit_measure::condition::Conditioned;
-use denavit_measure::{JointIndex, LogIndex};
+use denavit_measure::LogIndex;
 use denavit_plants::regression::RegressionModel;
 use std::collections::VecDeque;
 
@@ -14,14 +13,12 @@ use std::collections::VecDeque;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Left {
     pub(super) rows: f64,
-    pub(super) squares: f64,
+    squares: f64,
     /// Of rows half a period of the filter's cutoff apart their products, and mean squares.
     pub(super) alike: f64,
     pub(super) both: f64,
     /// Rows in that time.
     pub(super) apart: f64,
-    /// Coulomb friction of the joint [N m, N].
-    pub(super) friction: f64,
 }
 
 impl Left {
@@ -47,51 +44,26 @@ impl Left {
             alike: self.alike + other.alike,
             both: self.both + other.both,
             apart: self.apart.max(other.apart),
-            friction: self.friction,
         }
     }
 
-    pub(super) fn mean_square(&self) -> f64 {
+    fn mean_square(&self) -> f64 {
         self.squares / self.rows.max(1.0)
     }
 
-    /// How much it is like itself half a period later, and how much of that is chance.
-    fn alike(&self) -> [f64; 2] {
+    /// Whether it is no noise: half a period later it is like itself by more than chance.
+    fn is_no_noise(&self) -> bool {
         let alike = if self.both > 0.0 { self.alike / self.both } else { 0.0 };
-        [alike, (2.0 * self.apart / self.rows.max(1.0)).sqrt()]
-    }
-
-    /// The mean square of what is surely no noise.
-    pub(super) fn without_noise(&self) -> f64 {
-        let [alike, by_chance] = self.alike();
-        self.mean_square() * (alike - by_chance).max(0.0)
-    }
-
-    /// Whether it is no noise, by more than chance.
-    pub(super) fn is_no_noise(&self) -> bool {
-        let [alike, by_chance] = self.alike();
-        alike > NO_NOISE + by_chance
+        alike > NO_NOISE + (2.0 * self.apart / self.rows.max(1.0)).sqrt()
     }
 }
 
 impl LeftOut {
     /// What phi leaves of the rows that count, by log and joint.
-    pub(super) fn left(
-        &self,
-        model: &RegressionModel,
-        logs: &[Conditioned],
-        phi: &[f64],
-    ) -> Vec<Vec<Left>> {
+    fn left(&self, model: &RegressionModel, logs: &[Conditioned], phi: &[f64]) -> Vec<Vec<Left>> {
         let of_log = |(number, log): (usize, &Conditioned)| {
-            let apart = samples_of(log, 0.5);
-            let maker = BlockMaker::new(model, log);
-            let mut left: Vec<Left> = (0..model.joints.len())
-                .map(|joint| Left {
-                    apart: apart as f64,
-                    friction: maker.coulomb_friction(JointIndex(joint), phi),
-                    ..Left::default()
-                })
-                .collect();
+            let apart = samples_of(log, 0.5) as f64;
+            let mut left = vec![Left { apart, ..Left::default() }; model.joints.len()];
             let mut recent = vec![VecDeque::new(); left.len()];
             let own = NumberedLog { number: LogIndex(number), log };
             self.for_each_left(model, own, phi, |joint, _, one, counts| {

@@ -30,7 +30,6 @@ mod nominal;
 mod one_equation;
 mod own_estimate;
 mod report;
-mod rests;
 mod robust;
 mod rows;
 mod total;

@@ -17,7 +17,6 @@ use denavit_numerics::Random;
 use denavit_numerics::least_squares::{Solution, solve};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
-use std::ops::Range;
 
 /// Samples of all logs that are looked at, before decimation.
 const SAMPLES: usize = 60_000;
@@ -100,9 +99,8 @@ pub(super) fn noise_squares(
     }
     let of_joint = |joint: usize| model.of_joint(joint, phi.as_slice());
     let phi: Vec<Vec<f64>> = (0..squares.len()).map(of_joint).collect();
-    let rests = &left_out.all_rests(own);
     let mut random = Random::new(SEED);
-    with_noise(model, log, SAMPLES, rests, &mut random, |first, block, noisy, of_all| {
+    with_noise(model, log, SAMPLES, &mut random, |first, block, noisy, of_all| {
         for (joint, sum) in squares.iter_mut().enumerate() {
             let (joint, phi) = (JointIndex(joint), &phi[joint]);
             let Some(clean) = block.residual(joint, phi) else { continue };
@@ -124,7 +122,6 @@ fn with_noise(
     model: &RegressionModel,
     log: &Conditioned,
     longest: usize,
-    rests: &[Vec<Range<usize>>],
     random: &mut Random,
     mut visit: impl FnMut(SampleIndex, &Block, [&Block; 2], f64),
 ) {
@@ -134,17 +131,8 @@ fn with_noise(
     for piece in pieces {
         let Piece { first: SampleIndex(first), samples } = piece;
         let both = log.piece_with_noise(piece, random);
-        // means of rests of the piece alone, so that they differ by nothing but noise
-        let within = |from: usize| -> Vec<Vec<Range<usize>>> {
-            let clamp = |at: usize| at.clamp(first, first + samples) - first + from;
-            let of = |rest: &Range<usize>| clamp(rest.start)..clamp(rest.end);
-            let of_joint = |rests: &Vec<Range<usize>>| {
-                rests.iter().map(of).filter(|rest| !rest.is_empty()).collect()
-            };
-            rests.iter().map(of_joint).collect()
-        };
-        let mut straight = BlockMaker::resting(model, log, &within(first));
-        let mut makers = both.each_ref().map(|piece| BlockMaker::resting(model, piece, &within(0)));
+        let mut straight = BlockMaker::new(model, log);
+        let mut makers = both.each_ref().map(|piece| BlockMaker::new(model, piece));
         for from in (0..samples).step_by(BLOCK) {
             let count = BLOCK.min(samples - from);
             let sample = SampleIndex(first + from);
@@ -176,8 +164,7 @@ impl Noise {
         if log.position_noise.iter().all(|noise| *noise == 0.0) {
             return Self(noise);
         }
-        let rests = &left_out.all_rests(own);
-        with_noise(model, log, longest, rests, random, |first, block, noisy, of_all| {
+        with_noise(model, log, longest, random, |first, block, noisy, of_all| {
             let count = block.samples;
             for (joint, weight) in weights.iter().enumerate().filter(|(_, one)| **one > 0.0) {
                 let joint = JointIndex(joint);

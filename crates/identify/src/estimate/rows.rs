@@ -3,7 +3,6 @@
 use denavit_measure::condition::{Conditioned, Decimator};
 use denavit_measure::{JointIndex, SampleIndex};
 use denavit_plants::regression::{RegressionEvaluator, RegressionModel, RegressionRows};
-use std::ops::Range;
 
 /// Samples in a block.
 const BLOCK: usize = 512;
@@ -53,16 +52,7 @@ pub struct BlockMaker<'a> {
     rows: RegressionRows,
     /// Columns that jump with the rate: they pass the filter of the torque.
     coulomb: Vec<Coulomb>,
-    /// For each joint the times in which it rests.
-    rests: Vec<Vec<Rest>>,
     block: Block,
-}
-
-/// Samples in which a joint rests: its friction is a constant there, whatever it is.
-struct Rest {
-    samples: Range<usize>,
-    /// The mean of each column, and of what they are to give.
-    means: Vec<f64>,
 }
 
 /// A column of Coulomb friction.
@@ -105,59 +95,7 @@ impl<'a> BlockMaker<'a> {
             data,
             motion: Vec::new(),
             rows: RegressionRows::default(),
-            rests: Vec::new(),
             block: Block::default(),
-        }
-    }
-
-    /// The same with rows of joints that rest beside a constant of each rest: what holds them there
-    /// is not known, but that it does not change. `rests` are samples, joint by joint.
-    pub(super) fn resting(
-        model: &'a RegressionModel,
-        data: &'a Conditioned,
-        rests: &[Vec<Range<usize>>],
-    ) -> Self {
-        let mut maker = Self::new(model, data);
-        let mut all = Vec::new();
-        for (joint, rests) in rests.iter().enumerate() {
-            let of = |samples: &Range<usize>| maker.rest(JointIndex(joint), samples.clone());
-            all.push(rests.iter().filter_map(of).collect());
-        }
-        maker.rests = all;
-        maker
-    }
-
-    /// A rest of a joint, with the means of its rows; none of a joint without rows.
-    fn rest(&mut self, joint: JointIndex, samples: Range<usize>) -> Option<Rest> {
-        let mut means: Vec<f64> = Vec::new();
-        let count = samples.len() as f64;
-        self.for_each_of(samples.clone(), |block| {
-            let columns = block.with_target(joint).unwrap_or_default();
-            means.resize(columns.len(), 0.0);
-            for (mean, column) in means.iter_mut().zip(columns) {
-                *mean += column.iter().sum::<f64>() / count;
-            }
-        });
-        (!means.is_empty()).then_some(Rest { samples, means })
-    }
-
-    /// Takes what rests have in common from the rows of the block.
-    fn center(&mut self) {
-        let block = &mut self.block;
-        for (joint, rests) in self.rests.iter().enumerate() {
-            for Rest { samples, means } in rests {
-                let first = block.first.0;
-                let [from, to] = [samples.start, samples.end]
-                    .map(|at| at.clamp(first, first + block.samples) - first);
-                let target = block.torque[joint].iter_mut().map(|[_, target]| target);
-                let columns = block.columns[joint].iter_mut().chain(target);
-                for (column, mean) in columns.zip(means) {
-                    column[from..to].iter_mut().for_each(|entry| *entry -= mean);
-                }
-                for friction in self.coulomb.iter().filter(|one| one.joint.0 == joint) {
-                    block.columns[joint][friction.place][from..to].fill(0.0);
-                }
-            }
         }
     }
 
@@ -169,14 +107,10 @@ impl<'a> BlockMaker<'a> {
     }
 
     /// Calls `visit` with every block, in order.
-    pub fn for_each(&mut self, visit: impl FnMut(&Block)) {
-        self.for_each_of(0..self.data.samples(), visit);
-    }
-
-    /// The same with those of given samples alone.
-    pub(super) fn for_each_of(&mut self, samples: Range<usize>, mut visit: impl FnMut(&Block)) {
-        for first in samples.clone().step_by(BLOCK) {
-            visit(self.at(SampleIndex(first), BLOCK.min(samples.end - first)));
+    pub fn for_each(&mut self, mut visit: impl FnMut(&Block)) {
+        let samples = self.data.samples();
+        for first in (0..samples).step_by(BLOCK) {
+            visit(self.at(SampleIndex(first), BLOCK.min(samples - first)));
         }
     }
 
@@ -245,6 +179,5 @@ impl<'a> BlockMaker<'a> {
                 target.iter_mut().zip(decimated).for_each(|(target, known)| *target -= known);
             }
         }
-        self.center();
     }
 }

@@ -195,11 +195,9 @@ fn at_rest(
     let shown: Vec<f64> = phi.iter().zip(is_shown).map(|(phi, is_shown)| phi * is_shown).collect();
     let mut maker = BlockMaker::new(model, log);
     let apart = samples_of(log, 1.0) as f64;
-    let none = |joint: usize| {
-        let friction = maker.coulomb_friction(JointIndex(joint), &shown);
-        (Left { apart, friction, ..Left::default() }, 0.0)
-    };
-    let mut joints: Vec<(Left, f64)> = (0..rests.len()).map(none).collect();
+    let held = |joint: usize| STICTION * maker.coulomb_friction(JointIndex(joint), &shown);
+    let held: Vec<f64> = (0..rests.len()).map(held).collect();
+    let mut joints = vec![(Left { apart, ..Left::default() }, 0.0); rests.len()];
     let mut recent = vec![VecDeque::new(); joints.len()];
     let places: Vec<usize> = log.places(SampleIndex(0), log.samples()).collect();
     maker.for_each_left(phi, |joint, sample, [.., left]| {
@@ -208,7 +206,7 @@ fn at_rest(
         let (own, beyond) = &mut joints[joint.0];
         own.add(rests.then_some(left), &mut recent[joint.0]);
         if rests {
-            *beyond += (left.abs() - STICTION * own.friction).max(0.0).powi(2);
+            *beyond += (left.abs() - held[joint.0]).max(0.0).powi(2);
         }
     });
     joints

@@ -11,7 +11,7 @@ use super::left_out::{LeftOut, SlowRows, biased_frictions};
 use crate::error::Error;
 use crate::policy::widening::{LEAST, SURE};
 use denavit_measure::condition::Conditioned;
-use denavit_measure::{JointIndex, LogIndex};
+use denavit_measure::JointIndex;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
 
@@ -33,9 +33,6 @@ impl Fit<'_> {
         logs: &[Conditioned],
     ) -> Result<(Estimate, LeftOut), Error> {
         let mut fitted = self.fitted(model, logs, LeftOut::asked(model, logs, self.options))?;
-        if fitted.left_out.has_rests() {
-            fitted = self.without_held(model, logs, fitted)?;
-        }
         let mut tried = vec![false; model.joints.len()];
         if self.options.slow != SlowRows::Biasing {
             return Ok((fitted.found, fitted.left_out));
@@ -52,47 +49,6 @@ impl Fit<'_> {
             joints.iter().for_each(|&joint| tried[joint.0] = true);
             fitted = self.widened(model, logs, fitted, joints);
         }
-    }
-
-    /// Without rests in which something else than its motor holds a joint. What that leaves may be
-    /// taken for parameters, and leave much of motion, too; so does the wrong sign of friction near
-    /// reversals, where nothing is asked therefore.
-    fn without_held(
-        &self,
-        model: &RegressionModel,
-        logs: &[Conditioned],
-        fitted: Fitted,
-    ) -> Result<Fitted, Error> {
-        let mut asked = fitted.left_out.clone();
-        for &(joint, _) in model.coulomb() {
-            asked.widen(logs, JointIndex(joint), 1.0);
-        }
-        let of_motion = |asked: &LeftOut| {
-            let motion = asked.clone().without_rests();
-            let found = self.plain(model, (logs, &motion))?;
-            Ok::<_, Error>(motion.left(model, logs, found.solution.phi.as_slice()))
-        };
-        let moving = match of_motion(&asked) {
-            Ok(moving) => moving,
-            Err(_) => {
-                // too little is left of the motion
-                asked = fitted.left_out.clone();
-                of_motion(&asked)?
-            }
-        };
-        loop {
-            let found = self.plain(model, (logs, &asked))?;
-            let phi = found.solution.phi.as_slice();
-            let Some(fewer) = asked.without_held(model, logs, phi, &moving) else { break };
-            asked = fewer;
-        }
-        if asked.awake == fitted.left_out.awake {
-            return Ok(fitted);
-        }
-        let mut left_out = fitted.left_out;
-        left_out.awake = asked.awake;
-        (0..logs.len()).map(LogIndex).for_each(|log| left_out.keep_enough(log, logs));
-        self.fitted(model, logs, left_out)
     }
 
     fn fitted(

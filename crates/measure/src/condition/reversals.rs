@@ -7,10 +7,8 @@ use crate::{JointIndex, SampleIndex};
 use denavit_numerics::rms;
 use std::ops::Range;
 
-/// Periods of the filter's cutoff that a rest takes, at least; and that are left of one whose rows
-/// count, so that something is left beside a constant.
+/// Periods of the filter's cutoff that a rest takes, at least.
 const RESTS: usize = 6;
-const COUNTED: usize = 2;
 
 impl Conditioned {
     fn rate_at(&self, joint: JointIndex, k: usize) -> f64 {
@@ -99,34 +97,13 @@ impl Conditioned {
         let Some(filter) = &self.filter else { return vec![false; self.range.len()] };
         let least = STILL * self.usual(joint, 1);
         let period = 2 * filter.smear();
-        let spells = self.slow_spells(joint, filter, least);
-        self.within(spells, period, (RESTS - 2) * period)
-    }
-
-    /// The same of rests whose rows may count, if there are any: they are shorter, and the joint
-    /// need not be slower than the sign of its rate is known. Unseen by its encoder it creeps for a
-    /// while before it stands still, and rubs: as long as it takes to stop, by its usual rate and
-    /// acceleration, is none of the rest either.
-    pub fn counted_rests(&self, joint: JointIndex) -> Option<Vec<bool>> {
-        let filter = self.filter.as_ref().filter(|_| !self.resting[joint.0])?;
-        let period = 2 * filter.smear();
-        let stops_s = self.usual(joint, 1) / self.usual(joint, 2);
-        let stops = (stops_s / self.step_s).ceil().min(self.range.len() as f64) as usize;
-        let spells = self.slow_spells(joint, filter, 0.0);
-        let rests = self.within(spells, period.max(stops), COUNTED * period);
-        rests.contains(&true).then_some(rests)
-    }
-
-    /// The samples within spells, without so many at either end, into which the filter smears what
-    /// is beside, if more than so many are left.
-    fn within(&self, spells: Vec<Range<usize>>, edge: usize, least: usize) -> Vec<bool> {
-        let mut within = vec![false; self.range.len()];
-        for Range { start, end } in spells {
-            if end - start > 2 * edge + least {
-                within[start + edge..end - edge].fill(true);
+        let mut rests = vec![false; self.range.len()];
+        for Range { start, end } in self.slow_spells(joint, filter, least) {
+            if end - start > RESTS * period {
+                rests[start + period..end - period].fill(true);
             }
         }
-        within
+        rests
     }
 
     /// The samples of [`Conditioned::range`] in which a joint is no faster than noise of its

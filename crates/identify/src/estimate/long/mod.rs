@@ -115,8 +115,6 @@ impl LongRows {
         options: &Options,
         whole: WholeLog,
     ) -> Self {
-        // rests in which something else than the motor may hold a joint are not told from others:
-        // none counts
         let left_out = LeftOut::of_part(model, log, options, &rule.widened);
         let condensed = condensed(model, log, &left_out, whole.part_length(whole.samples));
         let mut found = Self::none(model, log, whole);

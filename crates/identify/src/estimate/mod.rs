@@ -53,6 +53,7 @@ pub(crate) use left_out::{biased_frictions, is_biased};
 pub(crate) use left_over::lacking;
 pub(crate) use likelihood::noise_of_positions;
 pub use noise_bias::NoiseOfLog;
+pub(crate) use noise_bias::noise_in_torques;
 pub(crate) use nominal::{is_of_joints, nominal_values};
 pub(crate) use one_equation::OneEquation;
 pub use report::{Convergence, IdentifiedParameter, Status, convergence, parameters};

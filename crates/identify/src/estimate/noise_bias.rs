@@ -11,11 +11,12 @@ use super::condensed::{RowFactors, Rows};
 use super::least_squares::Estimate;
 use super::left_out::{LeftOut, NumberedLog};
 use super::rows::{Block, BlockMaker};
+use super::validate::validate;
 use denavit_measure::condition::{Conditioned, Piece};
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_numerics::Random;
 use denavit_numerics::least_squares::{Solution, solve};
-use denavit_plants::regression::RegressionModel;
+use denavit_plants::regression::{RegressionJoint, RegressionModel};
 use nalgebra::{DMatrix, DVector};
 
 /// Samples of all logs that are looked at, before decimation.
@@ -113,6 +114,24 @@ pub(super) fn noise_squares(
         }
     });
     squares
+}
+
+/// How much of each joint's torque in a log noise of its positions makes with phi, root of mean
+/// square over root of mean square; 0 where none was measured.
+pub(crate) fn noise_in_torques(
+    model: &RegressionModel,
+    log: &Conditioned,
+    phi: &[f64],
+) -> Vec<f64> {
+    let all = LeftOut::none(std::slice::from_ref(log));
+    let own = NumberedLog { number: LogIndex(0), log };
+    let noise = noise_squares(model, own, &all, &DVector::from_column_slice(phi));
+    let left = validate(model, phi, &[log]);
+    let share = |(joint, noise): (&RegressionJoint, f64)| {
+        let torque = left.joint(&joint.name)?.torque_rms;
+        (torque > 0.0).then(|| (noise / log.samples() as f64).sqrt() / torque)
+    };
+    model.joints.iter().zip(noise).map(|both| share(both).unwrap_or(0.0)).collect()
 }
 
 /// Calls `visit` with blocks of a log, of which so many samples are looked at before decimation:

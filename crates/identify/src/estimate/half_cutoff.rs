@@ -19,7 +19,7 @@ use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 
 /// Samples of all logs that are looked at, before decimation.
-pub(super) const SAMPLES: usize = 200_000;
+const SAMPLES: usize = 200_000;
 
 /// How a parameter changes with half the cutoff of the filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,21 +85,10 @@ impl Fit<'_> {
             return None;
         }
         let left_out = left_out.of_halved(logs, &places);
-        let weights: Vec<Vec<f64>> =
-            places.iter().map(|(number, _)| found.weights[number.0].clone()).collect();
-        let both = [own, halved].map(|logs| Condensed::counted(model, (&logs, &left_out)));
-        self.change_of(model, both, &weights, found)
-    }
-
-    /// The same from rows of pieces of logs as they are, and behind half the cutoff.
-    pub(super) fn change_of(
-        &self,
-        model: &RegressionModel,
-        both: [Condensed; 2],
-        weights: &[Vec<f64>],
-        found: &Estimate,
-    ) -> Option<Vec<HalfCutoff>> {
-        let both = both.map(|condensed| {
+        let weights = places.iter().map(|(number, _)| found.weights[number.0].clone());
+        let weights = &weights.collect::<Vec<_>>()[..];
+        let both = [own, halved].map(|logs| {
+            let condensed = Condensed::counted(model, (&logs, &left_out));
             let solution = self.solved(&condensed, &condensed.whole(), weights);
             (condensed, solution)
         });

@@ -13,7 +13,7 @@ use std::collections::VecDeque;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Left {
     pub(super) rows: f64,
-    squares: f64,
+    pub(super) squares: f64,
     /// Of rows half a period of the filter's cutoff apart their products, and mean squares.
     pub(super) alike: f64,
     pub(super) both: f64,

@@ -7,14 +7,14 @@
 mod text;
 
 use super::condensed::{Condensed, PARTS, part_length, plain};
-use super::half_cutoff::{SAMPLES, widen};
+use super::half_cutoff::widen;
 use super::least_squares::{Estimate, Fit, Method, Options};
 use super::left_out::{LeftOut, SlowRows};
 use super::rows::BlockMaker;
 use super::validate::{JointResidual, Validation};
 use crate::error::Error;
-use denavit_measure::condition::{Conditioned, Piece};
-use denavit_measure::{JointIndex, LogIndex, SampleIndex};
+use denavit_measure::condition::Conditioned;
+use denavit_measure::{JointIndex, SampleIndex};
 use denavit_numerics::least_squares::Triangle;
 use denavit_plants::regression::{CoulombLaw, RegressionJoint, RegressionModel};
 
@@ -37,8 +37,6 @@ pub struct LongRows {
     torque_squares: Vec<f64>,
     /// Samples that are left after decimation.
     samples: usize,
-    /// Rows that count of a piece of each stretch, as they are and behind half the cutoff.
-    halved: [Condensed; 2],
 }
 
 /// Pieces in which a log of so many stretches is condensed, each by itself: of a long one parts
@@ -47,66 +45,7 @@ pub fn pieces(stretches: usize) -> usize {
     stretches.min(PARTS)
 }
 
-/// Rows of one log that has no parts yet.
-fn no_parts(model: &RegressionModel, independent: f64, row_s: f64) -> Condensed {
-    let columns = (model.pattern().to_vec(), model.rank());
-    Condensed::without_parts(columns, vec![independent], vec![row_s])
-}
-
-/// Adds parts that come later, or rows of the part that is the last.
-fn join(own: &mut Condensed, its: Condensed, is_same_part: bool) {
-    if is_same_part && let (Some(part), [next]) = (own.parts.last_mut(), &its.parts[..]) {
-        for (sum, one) in part.iter_mut().zip(next).filter(|(_, one)| one.rows() > 0) {
-            sum.merge(one);
-        }
-        own.end_s.pop();
-    } else {
-        own.parts.extend(its.parts);
-        own.log_of_part.extend(its.log_of_part);
-    }
-    own.end_s.extend(its.end_s);
-}
-
-/// Settling times of a filter of half the cutoff that a piece has, at least, behind it.
-const SETTLED: usize = 16;
-
-/// The rows of a piece in the middle of a stretch as they are, and behind half the cutoff, so that
-/// pieces of all stretches have as many samples as are looked at of any log; none where no position
-/// has noise, or the stretch is too short.
-fn halved(
-    model: &RegressionModel,
-    log: &Conditioned,
-    left_out: &LeftOut,
-    whole: WholeLog,
-) -> Option<[Condensed; 2]> {
-    let lower = log.filter.as_ref()?.halved()?;
-    let is_noisy = log.position_noise.iter().any(|noise| *noise > 0.0);
-    let length = (SAMPLES / whole.stretches).max(SETTLED * lower.settling()) / log.decimation;
-    // what a stretch is read with beside it is no part of its rows
-    let beside = log.range.start.div_ceil(log.decimation);
-    let free = log.samples().checked_sub(length + 2 * beside).filter(|_| is_noisy && length > 0)?;
-    let piece = Piece { first: SampleIndex(beside + free / 2), samples: length };
-    let [plain, lower] = log.halved(piece)?;
-    let first = piece.first.0 * log.decimation + plain.range.start - log.range.start;
-    let place = [(LogIndex(0), first..first + plain.range.len())];
-    let left_out = left_out.of_halved(std::slice::from_ref(log), &place);
-    let length = whole.part_length(SAMPLES / log.decimation);
-    Some([plain, lower].map(|log| condensed(model, &log, &left_out, length)))
-}
-
 impl LongRows {
-    /// No rows of the kind that a conditioned stretch has.
-    fn none(model: &RegressionModel, log: &Conditioned, whole: WholeLog) -> Self {
-        let samples = whole.samples.max(1) as f64;
-        let independent = (log.noise_gains()[0][0] * whole.inner as f64).min(samples) / samples;
-        let row_s = log.step_s * log.decimation as f64;
-        let condensed = no_parts(model, independent, row_s);
-        let joints = model.joints.len();
-        let all = condensed.pattern.iter().map(|places| Triangle::new(places.len())).collect();
-        let halved = [0, 1].map(|_| no_parts(model, 1.0, row_s));
-        Self { condensed, all, torque_squares: vec![0.0; joints], samples: 0, halved }
-    }
-
     /// The rows of a conditioned stretch of a log.
     pub fn of_stretch(
         model: &RegressionModel,
@@ -116,34 +55,42 @@ impl LongRows {
         whole: WholeLog,
     ) -> Self {
         let left_out = LeftOut::of_part(model, log, options, &rule.widened);
-        let condensed = condensed(model, log, &left_out, whole.part_length(whole.samples));
-        let mut found = Self::none(model, log, whole);
-        if let Some(halved) = halved(model, log, &left_out, whole) {
-            found.halved = halved;
-        }
-        (found.condensed.parts, found.condensed.log_of_part) =
-            (condensed.parts, condensed.log_of_part);
+        let (pattern, rank) = (model.pattern().to_vec(), model.rank());
+        let (rows, length) = ((std::slice::from_ref(log), &left_out), whole.part_length());
+        let mut condensed = Condensed::of_parts(model, rows, pattern, rank, length, &mut plain);
+        let samples = whole.samples.max(1) as f64;
+        let independent = (log.noise_gains()[0][0] * whole.inner as f64).min(samples) / samples;
+        condensed.independent = vec![independent];
         let offset = log.time_s(SampleIndex(0)) - whole.start_s;
-        found.condensed.end_s = condensed.end_s.into_iter().map(|end| end + offset).collect();
-        found.samples = log.samples();
+        condensed.end_s.iter_mut().for_each(|end| *end += offset);
+        let widths = condensed.pattern.iter().map(Vec::len);
+        let mut all: Vec<Triangle> = widths.map(Triangle::new).collect();
+        let mut torque_squares = vec![0.0; all.len()];
         BlockMaker::new(model, log).for_each(|block| {
-            for joint in 0..found.all.len() {
+            for (joint, (all, squares)) in all.iter_mut().zip(&mut torque_squares).enumerate() {
                 let Some(columns) = block.with_target(JointIndex(joint)) else { continue };
-                found.all[joint].push(&columns);
+                all.push(&columns);
                 let [torque, _] = block.torque[joint].as_ref().expect("it has a target");
-                found.torque_squares[joint] += torque.iter().map(|one| one * one).sum::<f64>();
+                *squares += torque.iter().map(|one| one * one).sum::<f64>();
             }
         });
-        found
+        Self { condensed, all, torque_squares, samples: log.samples() }
     }
 
     /// Adds the rows of a stretch, or of a piece, that comes later; of a piece that is a part of
     /// the log, as one with those before.
     pub fn add(&mut self, later: Self, is_same_part: bool) {
-        join(&mut self.condensed, later.condensed, is_same_part);
-        for (own, its) in self.halved.iter_mut().zip(later.halved) {
-            join(own, its, is_same_part);
+        let (own, its) = (&mut self.condensed, later.condensed);
+        if is_same_part && let (Some(part), [next]) = (own.parts.last_mut(), &its.parts[..]) {
+            for (sum, one) in part.iter_mut().zip(next).filter(|(_, one)| one.rows() > 0) {
+                sum.merge(one);
+            }
+            own.end_s.pop();
+        } else {
+            own.parts.extend(its.parts);
+            own.log_of_part.extend(its.log_of_part);
         }
+        own.end_s.extend(its.end_s);
         for (sum, one) in self.all.iter_mut().zip(&later.all).filter(|(_, one)| one.rows() > 0) {
             sum.merge(one);
         }
@@ -209,22 +156,10 @@ pub struct WholeLog {
 }
 
 impl WholeLog {
-    /// Samples of a part of a stretch, where those of all stretches have so many together.
-    fn part_length(self, samples: usize) -> usize {
-        if self.stretches < PARTS { part_length(samples) } else { usize::MAX }
+    /// Samples of a part of a stretch.
+    fn part_length(self) -> usize {
+        if self.stretches < PARTS { part_length(self.samples) } else { usize::MAX }
     }
-}
-
-/// The rows of a log that count, in parts of so many samples.
-fn condensed(
-    model: &RegressionModel,
-    log: &Conditioned,
-    left_out: &LeftOut,
-    length: usize,
-) -> Condensed {
-    let (pattern, rank) = (model.pattern().to_vec(), model.rank());
-    let rows = (std::slice::from_ref(log), left_out);
-    Condensed::of_parts(model, rows, pattern, rank, length, &mut plain)
 }
 
 impl Estimate {
@@ -267,8 +202,7 @@ impl Estimate {
         let mut found = fit.of_condensed(rows.condensed.clone(), has_torque)?;
         let covariance = fit.problem(&found).covariance(options.errors);
         (found.covariance, found.degrees_of_freedom) = fit.errors(model, &found, covariance);
-        let halved = rows.halved.clone();
-        let mut change = fit.change_of(model, halved, &found.weights, &found);
+        let mut change = self.change;
         if let Some(change) = &mut change {
             widen(change, model, &mut found.covariance);
         }

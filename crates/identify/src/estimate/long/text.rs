@@ -21,10 +21,9 @@ fn wrong(reason: impl fmt::Display) -> Error {
 impl LongRows {
     /// As JSON: triangles by their columns, from the top to the diagonal.
     pub fn to_json(&self) -> Value {
-        let Self { condensed, all, torque_squares, samples, halved } = self;
+        let Self { condensed, all, torque_squares, samples } = self;
         json!({
             "counted": condensed_json(condensed),
-            "halved": halved.each_ref().map(condensed_json),
             "all": all.iter().map(triangle_json).collect::<Vec<_>>(),
             "torque_squares": torque_squares,
             "samples": samples,
@@ -38,7 +37,6 @@ impl LongRows {
     pub fn of_json(model: &RegressionModel, value: &Value) -> Result<Self, Error> {
         let samples = value["samples"].as_u64().ok_or_else(|| wrong("`samples` is no count"))?;
         let joints = model.joints.len();
-        let half = |at: usize| condensed_of_json(model, &value["halved"][at]);
         let torque_squares = numbers(&value["torque_squares"], joints, "`torque_squares`")?;
         if torque_squares.iter().any(|squares| *squares < 0.0) {
             return Err(wrong("`torque_squares` has a number below 0"));
@@ -48,7 +46,6 @@ impl LongRows {
             all: of_joints(model, &value["all"])?,
             torque_squares,
             samples: usize::try_from(samples).map_err(wrong)?,
-            halved: [half(0)?, half(1)?],
         })
     }
 }

@@ -2,8 +2,7 @@
 
 use super::half_cutoff::HalfCutoff;
 use super::least_squares::Estimate;
-pub(super) use crate::policy::report::BIASING;
-use crate::policy::report::{DEAD_SHARE, SURE};
+use crate::policy::report::{BIASING, DEAD_SHARE};
 use denavit_measure::PartIndex;
 use denavit_numerics::interval_factor;
 use denavit_numerics::least_squares::solve;
@@ -72,7 +71,7 @@ impl IdentifiedParameter {
 
     /// Whether it changes with half the cutoff of the filter by more than chance.
     pub fn is_changed(&self) -> bool {
-        self.half_cutoff.is_some_and(|one| one.is_beyond(SURE))
+        self.half_cutoff.is_some_and(|one| one.is_sure())
     }
 
     /// Whether noise of the positions biases it by more than an interval forgives that does not

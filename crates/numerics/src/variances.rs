@@ -14,6 +14,15 @@ pub fn rms(values: impl IntoIterator<Item = impl Borrow<f64>>) -> f64 {
     (sum / count.max(1) as f64).sqrt()
 }
 
+/// The sums of the products of two signals without their means, and of the squares of both: a b,
+/// a^2, b^2.
+pub fn products(a: &[f64], b: &[f64]) -> [f64; 3] {
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+    let (at, bt) = (mean(a), mean(b));
+    let apart = a.iter().zip(b).map(|(a, b)| (a - at, b - bt));
+    apart.fold([0.0; 3], |[ab, aa, bb], (a, b)| [ab + a * b, aa + a * a, bb + b * b])
+}
+
 /// What chance leaves of a variance with so many degrees of freedom, less in one of twenty cases
 /// (Wilson and Hilferty 1931).
 pub fn least_by_chance(degrees_of_freedom: f64) -> f64 {

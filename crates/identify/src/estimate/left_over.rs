@@ -4,8 +4,8 @@ use super::least_squares::Estimate;
 use super::left_out::{LeftOut, NumberedLog};
 use super::unexplained::{ShownLogs, samples_of};
 use crate::policy::left_over::{NO_NOISE, SAID};
-use denavit_measure::condition::Conditioned;
 use denavit_measure::LogIndex;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use std::collections::VecDeque;
 

@@ -7,8 +7,8 @@
 
 use super::condensed::Condensed;
 use super::least_squares::Fit;
-pub(super) use crate::policy::weights::SETTLED;
 use crate::policy::weights::LEAST_FREE;
+pub(super) use crate::policy::weights::SETTLED;
 use denavit_measure::JointIndex;
 use denavit_numerics::least_squares::{Solution, Triangle};
 

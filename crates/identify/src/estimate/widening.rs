@@ -10,8 +10,8 @@ use super::least_squares::{Estimate, Fit};
 use super::left_out::{LeftOut, SlowRows, biased_frictions};
 use crate::error::Error;
 use crate::policy::widening::{LEAST, SURE};
-use denavit_measure::condition::Conditioned;
 use denavit_measure::JointIndex;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
 

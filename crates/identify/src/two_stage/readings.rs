@@ -4,6 +4,7 @@
 use super::Estimate;
 use crate::error::{Error, ErrorKind};
 use crate::policy::readings::{OTHER, SURE, TURNS, WRONG_SPRING};
+use denavit_numerics::products;
 use std::f64::consts::TAU;
 
 /// How near a mistake explains a ratio.
@@ -25,15 +26,7 @@ fn mending(
 /// Slope and correlation of a signal over what it is expected to be, both without their means;
 /// none if nothing is expected.
 fn compared(found: &[f64], expected: &[f64]) -> Option<(f64, f64)> {
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
-    let (found_mean, expected_mean) = (mean(found), mean(expected));
-    let (mut both, mut of_found, mut of_expected) = (0.0, 0.0, 0.0);
-    for (found, expected) in found.iter().zip(expected) {
-        let (found, expected) = (found - found_mean, expected - expected_mean);
-        both += found * expected;
-        of_found += found * found;
-        of_expected += expected * expected;
-    }
+    let [both, of_found, of_expected] = products(found, expected);
     let size = (of_found * of_expected).sqrt().max(f64::MIN_POSITIVE);
     (of_expected > 0.0).then_some((both / of_expected, both / size))
 }

@@ -2,6 +2,7 @@
 
 use super::Conditioned;
 use crate::policy::overlap::{MOVES, OVERLAP, PART, SAME};
+use denavit_numerics::rms;
 use std::ops::Range;
 
 /// Samples that are looked at before all are.
@@ -30,12 +31,8 @@ impl Pair<'_> {
 }
 
 fn rms_about_mean(values: &[f64]) -> f64 {
-    rms(values, values.iter().sum::<f64>() / values.len().max(1) as f64)
-}
-
-fn rms(values: &[f64], mean: f64) -> f64 {
-    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    (squares / values.len().max(1) as f64).sqrt()
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    rms(values.iter().map(|value| value - mean))
 }
 
 impl Conditioned {
@@ -86,7 +83,7 @@ impl<'a> Both<'a> {
         };
         let torque = |joint: usize| {
             let (long, short) = (long.torque[joint].as_ref()?, short.torque[joint].as_ref()?);
-            let most = SAME * rms(&short[inner.clone()], 0.0) + 1e-12;
+            let most = SAME * rms(&short[inner.clone()]) + 1e-12;
             Some(Pair { long, short, most })
         };
         let torques: Vec<Pair<'_>> = (0..short.joints()).filter_map(torque).collect();

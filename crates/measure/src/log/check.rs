@@ -6,6 +6,7 @@ use crate::policy::check::{
     ABOVE_ROUNDING, FAR_BEYOND, FASTEST_STEP_S, HOUR_S, IN_STEPS, LARGEST_ANGLE_RAD, MOST_STEPS,
     OTHER, ROUNDING, SAME, SATURATED, SLOWEST_STEP_S, WHOLE,
 };
+use denavit_numerics::products;
 use denavit_plants::regression::RegressionJoint;
 
 /// What looks wrong, and what is worth a remark.
@@ -107,7 +108,8 @@ fn logged_rate(signals: &JointSignals, step_s: f64, joint: &RegressionJoint, fou
         found.suspicions.push(Suspicion::NotTheRate { column, correlation });
         return;
     }
-    let ratio = slope(&position, &travelled);
+    let [along, of_position, _] = products(&position, &travelled);
+    let ratio = along / of_position;
     if !(0.8..1.25).contains(&ratio) {
         found.suspicions.push(Suspicion::RateScale { column, ratio });
     }
@@ -201,37 +203,16 @@ fn level(signal: &[f64]) -> Vec<f64> {
     let middle = 0.5 * (signal.len() as f64 - 1.0);
     let at = |index: usize| index as f64 - middle;
     let squares: f64 = (0..signal.len()).map(|index| at(index).powi(2)).sum();
-    let products: f64 = signal.iter().enumerate().map(|(index, value)| at(index) * value).sum();
-    let (mean, slope) = (mean(signal), products / squares.max(f64::MIN_POSITIVE));
+    let along: f64 = signal.iter().enumerate().map(|(index, value)| at(index) * value).sum();
+    let mean = signal.iter().sum::<f64>() / signal.len() as f64;
+    let slope = along / squares.max(f64::MIN_POSITIVE);
     signal.iter().enumerate().map(|(index, value)| value - mean - slope * at(index)).collect()
 }
 
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
-}
-
 /// The correlation of two signals; 0 where one of them is constant.
-pub(super) fn correlation(a: &[f64], b: &[f64]) -> f64 {
-    let (at, bt) = (mean(a), mean(b));
-    let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
-    for (x, y) in a.iter().zip(b) {
-        let (x, y) = (x - at, y - bt);
-        ab += x * y;
-        aa += x * x;
-        bb += y * y;
-    }
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let [ab, aa, bb] = products(a, b);
     if aa > 0.0 && bb > 0.0 { ab / (aa * bb).sqrt() } else { 0.0 }
-}
-
-/// The slope of `b` over `a`.
-fn slope(a: &[f64], b: &[f64]) -> f64 {
-    let (at, bt) = (mean(a), mean(b));
-    let (mut ab, mut aa) = (0.0, 0.0);
-    for (x, y) in a.iter().zip(b) {
-        ab += (x - at) * (y - bt);
-        aa += (x - at) * (x - at);
-    }
-    ab / aa
 }
 
 /// Changes of a position that tell the step of its encoder, at least: of one that moves from sample

@@ -160,8 +160,10 @@ pub(crate) mod report {
     /// interval of 95 % that is off by so much holds in 92 %.
     pub(crate) const BIASING: f64 = 0.5;
 
-    /// Deviations of a change with half the cutoff that is no chance, of any of dozens of
-    /// parameters: it is reported.
+    /// Deviations of a change that are hardly chance: a lower filter is tried.
+    pub(crate) const LIKELY: f64 = 2.5;
+
+    /// Those of one that is none, of any of dozens of parameters: it is reported.
     pub(crate) const SURE: f64 = 3.5;
 }
 

@@ -11,7 +11,7 @@ use super::condensed::{Condensed, Rows};
 use super::errors::{FEWEST_PARTS, Problem};
 use super::least_squares::{Estimate, Fit};
 use crate::policy::half_cutoff::OF_CHANGE;
-use crate::policy::report::{BIASING, SURE};
+use crate::policy::report::BIASING;
 use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_numerics::long_run;
@@ -33,10 +33,10 @@ pub struct HalfCutoff {
 }
 
 impl HalfCutoff {
-    /// Whether it changes by more than chance, and by more than an interval without the change
-    /// forgives.
-    pub(super) fn is_sure(&self) -> bool {
-        self.change.abs() > (BIASING * self.own_std).max(SURE * self.deviation)
+    /// Whether it changes by more than so many deviations by chance, and by more than an interval
+    /// without the change forgives.
+    pub(super) fn is_beyond(&self, deviations: f64) -> bool {
+        self.change.abs() > (BIASING * self.own_std).max(deviations * self.deviation)
     }
 
     /// What a change is more than chance.

@@ -2,7 +2,7 @@
 
 use super::half_cutoff::HalfCutoff;
 use super::least_squares::Estimate;
-use crate::policy::report::{BIASING, DEAD_SHARE};
+use crate::policy::report::{BIASING, DEAD_SHARE, LIKELY, SURE};
 use denavit_measure::PartIndex;
 use denavit_numerics::interval_factor;
 use denavit_numerics::least_squares::solve;
@@ -71,7 +71,7 @@ impl IdentifiedParameter {
 
     /// Whether it changes with half the cutoff of the filter by more than chance.
     pub fn is_changed(&self) -> bool {
-        self.half_cutoff.is_some_and(|one| one.is_sure())
+        self.half_cutoff.is_some_and(|one| one.is_beyond(SURE))
     }
 
     /// Whether noise of the positions biases it by more than an interval forgives that does not
@@ -80,6 +80,11 @@ impl IdentifiedParameter {
         let own = self.half_cutoff.map_or(self.std, |one| Some(one.own_std));
         let bias = self.noise_bias.zip(self.std).zip(own);
         bias.is_some_and(|((bias, std), own)| bias.abs() * std > BIASING * own)
+    }
+
+    /// Whether it seems to change with half the cutoff: a lower filter may be better.
+    pub fn may_change(&self) -> bool {
+        self.half_cutoff.is_some_and(|one| one.is_beyond(LIKELY))
     }
 }
 

@@ -6,7 +6,7 @@ use super::logs::{self, Read};
 use crate::error::{Cause, Error};
 use crate::observer::{Reading, Stage, Watched};
 use denavit_codegen::effect::{self, Effect};
-use denavit_identify::estimate::{Method, Options};
+use denavit_identify::estimate::{IdentifiedParameter, Method, Options};
 use denavit_identify::{
     Estimated, Identification, Request, UpdatedModel, estimated, updated_model,
 };
@@ -78,7 +78,8 @@ impl Estimation<'_> {
     }
 
     /// What is found with the highest filter, of those that nobody asked for, below which noise of
-    /// the positions biases nothing.
+    /// the positions biases nothing; where parameters change with half the cutoff, with the one
+    /// that makes their errors smallest.
     pub(super) fn unbiased(
         &self,
         mut read: Read,
@@ -91,7 +92,7 @@ impl Estimation<'_> {
         }
         let mut found = self.estimated(&read, options)?;
         let allows_for_noise = options.method == Method::Instrumental;
-        while !allows_for_noise && let Some(lower) = self.lower(&read, &halvings, &found) {
+        while !allows_for_noise && let Some((lower, most)) = self.lower(&read, &halvings, &found) {
             let times = lower.iter().copied().max().unwrap_or(0);
             let again = Stage::ReadingLogsAgain(times);
             if !watched.begins(again) {
@@ -103,7 +104,11 @@ impl Estimation<'_> {
                 true => Some(self.estimated(&read, options)?),
                 false => None,
             };
-            let Some(better) = next.filter(|next| next.filter_error.is_none()) else {
+            let better = next.filter(|next| {
+                let growth = growth_of_errors(&next.parameters, &found.parameters);
+                next.filter_error.is_none() && growth < most
+            });
+            let Some(better) = better else {
                 // worse than the noise that it takes away, or stopped
                 drop(read);
                 read = self.read_again(&halvings, again, watched)?;
@@ -145,11 +150,30 @@ impl Estimation<'_> {
         }
     }
 
-    /// The next lower filters of logs, if noise of their positions biases parameters.
-    fn lower(&self, read: &Read, halvings: &[u32], found: &Estimated) -> Option<Halvings> {
+    /// The next lower filters of logs, if noise of the positions asks for them, and how errors may
+    /// grow with them: of the logs that bias parameters, or of all where parameters may change
+    /// with it.
+    fn lower(&self, read: &Read, halvings: &[u32], found: &Estimated) -> Option<(Halvings, f64)> {
+        let conditions = &self.work.options.conditions;
         let logs: Vec<&Conditioned> = read.train.iter().collect();
-        self.work.options.conditions.lower(&logs, halvings, &found.biasing_logs)
+        let lower = |asking: &[bool]| conditions.lower(&logs, halvings, asking);
+        let of_biasing = lower(&found.biasing_logs).map(|lower| (lower, f64::INFINITY));
+        let may_change = found.parameters.iter().any(IdentifiedParameter::may_change);
+        let of_all = || lower(&vec![may_change; halvings.len()]).map(|lower| (lower, SMALLER));
+        of_biasing.or_else(of_all)
     }
+}
+
+/// How errors may grow with a lower filter, as the logarithm of their geometric mean.
+const SMALLER: f64 = 0.0;
+
+/// By what standard errors are larger than others: the logarithm of the geometric mean.
+fn growth_of_errors(parameters: &[IdentifiedParameter], others: &[IdentifiedParameter]) -> f64 {
+    let ratio = |(one, other): (&IdentifiedParameter, &IdentifiedParameter)| match other.std {
+        Some(other) if other > 0.0 => one.std.map_or(f64::INFINITY, |std| (std / other).ln()),
+        _ => 0.0,
+    };
+    parameters.iter().zip(others).map(ratio).sum::<f64>() / parameters.len().max(1) as f64
 }
 
 /// The identified model with all of its effects: what is simulated.

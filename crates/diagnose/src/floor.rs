@@ -60,7 +60,7 @@ fn floor(
         // What differs much more from lap to lap than it shakes is not noise.
         let of_laps = of_laps.filter(|laps| *laps < UNREPEATABLE * of_log);
         let seen = of_laps.map_or(of_log, |laps| laps.max(of_log));
-        let rms = torque[equation].as_ref().map_or(0.0, |torque| rms(torque));
+        let rms = torque[equation].as_ref().map_or(0.0, rms);
         seen.max(LEAST * rms).max(f64::MIN_POSITIVE)
     };
     (0..computed.len()).map(of).collect()

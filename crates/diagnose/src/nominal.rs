@@ -107,7 +107,7 @@ impl<'a> Nominal<'a> {
             let torques = logs.iter().filter_map(|log| log.torque[joint].as_ref());
             let torques: Vec<f64> = torques.flatten().copied().collect();
             let rates = logs.iter().flat_map(|log| log.of_drive(JointIndex(joint))[0]);
-            *usual = [rms(&torques), rms(&rates.copied().collect::<Vec<f64>>())];
+            *usual = [rms(&torques), rms(rates)];
         }
         self
     }

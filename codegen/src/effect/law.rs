@@ -22,7 +22,7 @@ const TERMS: Word<'_, ModelTerm> = Word {
 /// The law as it is written.
 pub(super) enum LawFile<'a> {
     Torque(Scalar<'a>),
-    Measured { channel: Channel, parts: Box<[Option<Scalar<'a>>; 9]> },
+    Measured { channel: Channel, parts: Box<[Option<Scalar<'a>>; 11]> },
     Moves(Vec<(Property, Scalar<'a>)>),
     Term(ModelTerm),
 }
@@ -62,15 +62,30 @@ impl<'a> LawFile<'a> {
 
 fn read_measured<'a>(node: Node<'a>, report: &mut Report) -> Option<LawFile<'a>> {
     const KEYS: &[&str] = &[
-        "channel", "value", "true", "gain", "offset", "delay_s", "lag_s", "swing_s", "damping",
+        "channel",
+        "value",
+        "true",
+        "gain",
+        "offset",
+        "delay_s",
+        "lag_s",
+        "swing_s",
+        "damping",
         "play",
+        "drag",
+        "joint_friction",
     ];
     let fields = node.fields(KEYS, report)?;
     let channel = fields.required_word("channel", &CHANNELS, report);
-    for key in ["swing_s", "damping", "play"] {
+    let has_more = KEYS[1..7].iter().any(|&key| fields.get(key).is_some());
+    for key in &KEYS[7..] {
         let Some(node) = fields.get(key) else { continue };
-        if channel != Channel::Torque || KEYS[1..7].iter().any(|&key| fields.get(key).is_some()) {
-            let why = "belongs to a law of `tau` that has nothing else";
+        let why = match *key {
+            "damping" => "belongs to a law of `tau` that has nothing else",
+            _ => "belongs to a law of `tau` or `q` that has nothing else",
+        };
+        let is_of = channel == Channel::Torque || channel == Channel::Position && *key != "damping";
+        if !is_of || has_more {
             report.push(node.at(), Cause::LawKey(key, why));
         }
     }
@@ -213,7 +228,7 @@ impl LawReader {
     fn measured(
         &mut self,
         channel: Channel,
-        parts: &[Option<Scalar<'_>>; 9],
+        parts: &[Option<Scalar<'_>>; 11],
         report: &mut Report,
     ) -> Measured {
         // only here: a law that adds to the torque cannot answer to the sum
@@ -223,7 +238,7 @@ impl LawReader {
             Channel::Position => self.position,
             Channel::Rate => self.position.times(Dimension::RATE).unwrap_or(self.position),
         };
-        let [value, truth, gain, offset, delay, lag, swing, damping, play] = parts;
+        let [value, truth, gain, offset, delay, lag, swing, damping, play, drag, joint] = parts;
         let true_value = match channel {
             Channel::Torque => "tau",
             Channel::Position => "q",
@@ -246,8 +261,11 @@ impl LawReader {
             swing_s: self.quantity(swing.clone(), "a swing", second, report),
             damping: self.quantity(damping.clone(), "a damping", Dimension::NONE, report),
             play: self.quantity(play.clone(), "a play", self.position, report),
+            drag: self.quantity(drag.clone(), "a drag", Dimension::RATE, report),
+            joint_friction: self.quantity(joint.clone(), "a share", Dimension::NONE, report),
         });
-        let is_inverse = truth.is_some() || transmission.is_some();
+        let is_torque = channel == Channel::Torque;
+        let is_inverse = truth.is_some() || transmission.is_some() && is_torque;
         Measured { channel, is_inverse, value, delay_s, lag_s, transmission }
     }
 

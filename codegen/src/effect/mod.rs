@@ -166,17 +166,24 @@ impl Channel {
     }
 }
 
-/// What joins a drive whose torque is logged to the joint whose position is: its rotor then moves
-/// otherwise than the joint.
+/// What joins a drive to its joint. Where the torque that is logged is the drive's and the position
+/// the joint's, the rotor moves otherwise than the joint; where both are the drive's, the joint does.
+/// Numbers are over the inertia of what moves: of the rotor, or of the bodies about the joint where
+/// all joints are at 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Transmission {
-    /// The root of the rotor's inertia times the compliance \[s\]: one over the angular frequency
-    /// at which the rotor swings while the joint stands.
+    /// The root of that inertia times the compliance \[s\]: one over the angular frequency of the
+    /// swing while the other side stands.
     pub swing_s: ExprId,
     /// Damping of that swing, as a share of the critical one.
     pub damping: ExprId,
-    /// The width in which nothing is passed on [rad, m].
+    /// The width in which only drag is passed on [rad, m].
     pub play: ExprId,
+    /// What the sides drag each other along by, also within the play, over the inertia and their
+    /// difference in velocity \[1/s\].
+    pub drag: ExprId,
+    /// The share of the drive's friction that brakes the joint instead: of bearings, not of a motor.
+    pub joint_friction: ExprId,
 }
 
 /// What is logged of a true quantity: value(t - delay), then a first-order lag.
@@ -269,7 +276,10 @@ impl Law {
             Self::Torque(torque) => vec![*torque],
             Self::Measured(measured) => {
                 let mut all = vec![measured.value, measured.delay_s, measured.lag_s];
-                let parts = measured.transmission.map(|one| [one.swing_s, one.play, one.damping]);
+                let parts = |one: Transmission| {
+                    [one.swing_s, one.play, one.damping, one.drag, one.joint_friction]
+                };
+                let parts = measured.transmission.map(parts);
                 all.extend(parts.into_iter().flatten());
                 all
             }

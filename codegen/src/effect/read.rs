@@ -143,7 +143,7 @@ fn note_linear(
     let mut hidden: Vec<ExprId> =
         states.iter().flat_map(|state| [state.rate, state.initial]).collect();
     if let Law::Measured(Measured { transmission: Some(one), .. }) = law {
-        hidden.extend([one.swing_s, one.damping, one.play]);
+        hidden.extend([one.swing_s, one.damping, one.play, one.drag, one.joint_friction]);
     }
     let is_linear = linear(dag, exprs, &symbols);
     for (parameter, is_linear) in parameters.iter_mut().zip(is_linear) {
@@ -164,7 +164,7 @@ fn vanishes(dag: &mut Dag, parameters: &[EffectParameter], law: &Law, exprs: &[E
         Law::Measured(measured) => {
             let symbol = dag.find_symbol(measured.channel.as_str());
             let value = symbol.map(|symbol| dag.symbol_expr(symbol));
-            // no delay, no lag, no swing and no play; a damping of nothing is nothing
+            // no delay, no lag, no swing and no play; what shapes nothing is nothing
             std::iter::once(value).chain([Some(dag.zero()); 4]).collect()
         }
         _ => vec![Some(dag.zero()); left.len()],

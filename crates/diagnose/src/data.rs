@@ -1,7 +1,7 @@
 //! Logs with the nominal model's rows: all that is asked of them, weighted and stacked.
 
 use super::known::weights;
-use super::law::{Law, Motion};
+use super::law::{Law, Motion, Response};
 use super::nominal::{Nominal, Phi};
 use super::rows::{LogRows, PerJoint, behind_springs, of_axes, torques};
 use super::signals::Signals;
@@ -224,9 +224,18 @@ impl<'a> Data<'a> {
         values: &[f64],
         torques: &[ModelTorques],
     ) -> RowResponse {
+        self.in_rows(&|motion| law.response(motion, values), torques)
+    }
+
+    /// The same of what is given for the motion of each log.
+    pub(super) fn in_rows(
+        &self,
+        of: &dyn Fn(Motion<'_>) -> Response,
+        torques: &[ModelTorques],
+    ) -> RowResponse {
         let mut found = RowResponse::default();
         for (log, (signals, torques)) in self.signals.iter().zip(torques).enumerate() {
-            let response = law.response(torques.motion(self.nominal, signals), values);
+            let response = of(torques.motion(self.nominal, signals));
             for (place, &equation) in response.equations.iter().enumerate() {
                 let is_own =
                     |stretch: &&Stretch| stretch.log.0 == log && stretch.equation == equation;

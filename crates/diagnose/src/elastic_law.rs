@@ -29,11 +29,16 @@ impl JointLaw {
         if signals.motor[joint.0].is_some() {
             return None;
         }
-        let mut load = signals.cell_means(&motion.load[joint.0]);
-        if let Some(filter) = Butterworth::new(ORDER, signals.driven_hz(), signals.log_step_s) {
-            filter.zero_phase(&mut load);
-        }
-        let of = |values: &[f64]| vec![self.ahead(signals, motion.drives[joint.0], &load, values)];
+        let filter = Butterworth::new(ORDER, signals.driven_hz(), signals.log_step_s);
+        let slow = |torque: &[f64]| {
+            let mut torque = signals.cell_means(torque);
+            filter.iter().for_each(|filter| filter.zero_phase(&mut torque));
+            torque
+        };
+        let drive = motion.drives[joint.0];
+        let friction = signals.qd[joint.0].iter().map(|qd| drive.friction(*qd));
+        let loads = [slow(&motion.load[joint.0]), slow(&friction.collect::<Vec<f64>>())];
+        let of = |values: &[f64]| vec![self.ahead(signals, drive, &loads, values)];
         let step = |place: usize| {
             let start = self.law.parameters[place].start.first().copied().unwrap_or(1.0);
             DIFFERENCE * if values[place] > 0.0 { values[place] } else { start }
@@ -43,17 +48,26 @@ impl JointLaw {
         Some(Response { equations: vec![joint.0], torque, gradient })
     }
 
-    /// What a drive takes more than if it moved with its joint, whose load is at the log's samples
-    /// [N m, N].
-    fn ahead(&self, signals: &Signals, drive: Drive, load: &[f64], values: &[f64]) -> Vec<f64> {
+    /// What a drive takes more than if it moved with its joint, whose load and friction are at the
+    /// log's samples [N m, N].
+    fn ahead(
+        &self,
+        signals: &Signals,
+        drive: Drive,
+        [load, friction]: &[Vec<f64>; 2],
+        values: &[f64],
+    ) -> Vec<f64> {
         let gives_way = self.law.gives_way(values);
         let is_soft = |own: &GivesWay| own.swing_s > 0.0 && drive.inertia > 0.0;
-        let Some(GivesWay { swing_s, damping, .. }) = gives_way.filter(is_soft) else {
+        let Some(way) = gives_way.filter(is_soft) else {
             return vec![0.0; signals.samples()];
         };
-        let stiffness = drive.inertia / (swing_s * swing_s);
-        let lag_s = 2.0 * damping * swing_s;
-        let ahead = deflections(load, stiffness, lag_s / signals.log_step_s);
+        let (drive, share) = (way.split(drive).0, way.joint_friction);
+        let load: Vec<f64> =
+            load.iter().zip(friction).map(|(load, friction)| load + share * friction).collect();
+        let stiffness = drive.inertia / (way.swing_s * way.swing_s);
+        let lag_s = 2.0 * way.damping * way.swing_s;
+        let ahead = deflections(&load, stiffness, lag_s / signals.log_step_s);
         let [rates, accelerations] = signals.derivatives(&ahead);
         let moves = rates.iter().zip(&accelerations).zip(&signals.qd[self.joint.0]);
         let side = |rate: f64| if rate == 0.0 { 0.0 } else { rate.signum() };

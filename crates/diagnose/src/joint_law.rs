@@ -3,7 +3,6 @@
 use super::floor::rms;
 use super::given::Belief;
 use super::law::{Law, Motion, Response};
-use super::reading_law::deflections;
 use crate::policy::joint_law::{ALL_GIVEN, OF_NOISE};
 use denavit_codegen::effect::{Channel, EffectSite, SpringSide};
 use denavit_evidence::Unpredicted;
@@ -74,19 +73,17 @@ pub(super) fn samples<'m>(
 
 impl JointLaw {
     /// A law as it acts on the torques of a log.
-    pub(super) fn new(mut law: EffectLaw, joint: JointIndex, other: Option<JointIndex>) -> Self {
+    pub(super) fn new(law: EffectLaw, joint: JointIndex, other: Option<JointIndex>) -> Self {
         let acts = match law.channel() {
             None if law.at == EffectSite::Spring => Acts::Spring,
+            Some(Channel::Position) if law.is_transmission() => Acts::Gap,
             Some(Channel::Torque) if law.has_play() => Acts::Play,
             Some(Channel::Torque) if law.is_transmission() => Acts::Elastic,
             Some(Channel::Torque) if law.is_inverse() => Acts::Demand,
             Some(Channel::Torque) if law.is_delay() => Acts::Delay,
             None | Some(Channel::Torque) => Acts::Torque,
-            Some(Channel::Position | Channel::Rate) if crosses_gap(&law) => Acts::Gap,
             Some(Channel::Position | Channel::Rate) => Acts::Reading,
         };
-        // How long a joint falls through a gap is not in proportion to the gap.
-        law.parameters.iter_mut().for_each(|one| one.linear &= acts != Acts::Gap);
         Self { law, joint, other, acts, beliefs: Vec::new() }
     }
 
@@ -173,16 +170,6 @@ impl JointLaw {
     }
 }
 
-/// Whether a law is of a gap behind a drive. A spring is taken to follow its load, slower than it
-/// swings.
-fn crosses_gap(law: &EffectLaw) -> bool {
-    law.is_read_at_drive() && {
-        let starts = law.parameters.iter().map(|one| one.start.first().copied().unwrap_or(1.0));
-        let under = deflections(law, &starts.collect::<Vec<f64>>(), &[1.0, 2.0]);
-        (under[1] - 2.0 * under[0]).abs() > f64::EPSILON * under[1].abs()
-    }
-}
-
 impl Law for JointLaw {
     fn parameters(&self) -> &[LawParameter] {
         &self.law.parameters
@@ -231,6 +218,13 @@ impl Law for JointLaw {
             Acts::Elastic => self.through_spring(&motion, values).unwrap_or_else(nothing),
             Acts::Reading => self.read(&motion, values, false),
             Acts::Gap => self.read(&motion, values, true),
+        }
+    }
+
+    fn torque(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+        match self.acts {
+            Acts::Gap => self.read_torque(&motion, values),
+            _ => Response { gradient: Vec::new(), ..self.response(motion, values) },
         }
     }
 }

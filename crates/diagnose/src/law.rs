@@ -82,6 +82,11 @@ pub trait Law {
     /// What it adds to the torques of a motion.
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response;
 
+    /// The same without derivatives.
+    fn torque(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+        Response { gradient: Vec::new(), ..self.response(motion, values) }
+    }
+
     /// Whether what it adds is made of accelerations, or of torques that answer them: beyond the
     /// frequencies that references drive these have the same noise as what they would explain.
     fn follows_accelerations(&self) -> bool {

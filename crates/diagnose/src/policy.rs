@@ -93,13 +93,6 @@ pub(crate) mod joint_law {
     pub(crate) const DIFFERENCE: f64 = 1e-4;
 }
 
-/// `reading_law.rs`: Effects that stand between a position or velocity and its log.
-pub(crate) mod reading_law {
-    /// How far loads of a table of deflections reach, over the largest load of the logged motion:
-    /// the load of a joint that falls through its gap is larger where it is caught.
-    pub(crate) const REACH: f64 = 8.0;
-}
-
 /// `known.rs`: What the rows of a joint tell of its torque at velocity reversals and rests of its
 /// drive.
 pub(crate) mod known {

@@ -1,31 +1,31 @@
 //! Effects that stand between a position or velocity and its log.
 //!
-//! Play after the encoder is one: the drive is where it is read, and the joint is behind it on one
-//! side of the gap or on the other, as its load is. That load is of the true motion. Taken of the
-//! motion of the drive, it lacks what the deflection itself accelerates, and a joint would cross a
-//! gap at once that it falls through in a tenth of a second:
+//! Play after the encoder is one: the drive is where it is read, and the joint is behind it by s. It
+//! moves by what passes through the gap: a drag, and what a side that gives way a little presses
+//! with beyond half the play.
 //!
 //! ```text
-//! logged = q + D(load),   load = load of the logged motion - M d^2/dt^2 D(load)
+//! M s'' = load - c s' - k (s beyond the play),   logged = q + s
 //! ```
 //!
-//! with M the inertia of the bodies about the joint. Steps in time are implicit, which damps what
-//! swings faster than they are.
+//! The load is that of the logged motion, with the friction that brakes the joint and not its drive, M the inertia of the bodies about the joint; k and c are
+//! over that inertia where all joints are at 0, so that they do not change with the posture. Steps
+//! in time are implicit, which damps what swings faster than they are.
 
 use super::joint_law::{JointLaw, samples};
 use super::law::{Motion, Response, differences};
 use super::rows::PerJoint;
 use super::signals::Signals;
 use crate::policy::joint_law::DIFFERENCE;
-use crate::policy::reading_law::REACH;
 use denavit_codegen::effect::Channel;
-use denavit_plants::effect::{EffectLaw, JointSamples};
+use denavit_plants::effect::GivesWay;
 
 impl JointLaw {
     /// What is between a position or velocity and its log: the model was given what is logged, and
     /// gives other torques for what is true.
     pub(super) fn read(&self, motion: &Motion<'_>, values: &[f64], has_gap: bool) -> Response {
-        let of = |values: &[f64]| self.of_truth(motion, values, has_gap);
+        let inertia = self.inertia_behind(motion, has_gap);
+        let of = |values: &[f64]| self.of_truth(motion, values, inertia.as_ref());
         let step = |place: usize| {
             let sizes = self.law.parameters[place].start.iter().map(|start| start.abs());
             let size = sizes.fold(values[place].abs(), f64::max);
@@ -36,16 +36,36 @@ impl JointLaw {
         Response { equations: (0..torque.len()).collect(), torque, gradient }
     }
 
+    /// The same of a joint behind a gap, without derivatives.
+    pub(super) fn read_torque(&self, motion: &Motion<'_>, values: &[f64]) -> Response {
+        let inertia = self.inertia_behind(motion, true);
+        let torque = self.of_truth(motion, values, inertia.as_ref());
+        Response { equations: (0..torque.len()).collect(), torque, gradient: Vec::new() }
+    }
+
+    /// The inertia of bodies behind a gap, which a motor that is measured is not.
+    fn inertia_behind(&self, motion: &Motion<'_>, has_gap: bool) -> Option<Vec<f64>> {
+        let is_behind = has_gap && motion.signals.motor[self.joint.0].is_none();
+        is_behind.then(|| self.inertia(motion))
+    }
+
     /// What the torques of the true motion have more than those of the logged one.
-    fn of_truth(&self, motion: &Motion<'_>, values: &[f64], has_gap: bool) -> PerJoint {
+    /// Of a joint behind a gap with its inertia.
+    fn of_truth(
+        &self,
+        motion: &Motion<'_>,
+        values: &[f64],
+        inertia: Option<&Vec<f64>>,
+    ) -> PerJoint {
         let (joint, logged) = (self.joint, motion.signals);
         let mut signals: Signals = logged.clone();
         let is_drive = self.law.is_read_at_drive() && logged.motor[joint.0].is_none();
-        let truth: Vec<f64> = if is_drive && has_gap {
-            let deflection = self.deflection(motion, values);
-            logged.q[joint.0].iter().zip(deflection).map(|(read, by)| read - by).collect()
-        } else {
-            self.law.corrected(&samples(motion, joint, None), values)
+        let truth: Vec<f64> = match inertia {
+            Some(inertia) => {
+                let deflection = self.deflection(motion, inertia, values);
+                logged.q[joint.0].iter().zip(deflection).map(|(read, by)| read - by).collect()
+            }
+            None => self.law.corrected(&samples(motion, joint, None), values),
         };
         if is_drive {
             let [q, qd, qdd] = [&logged.q, &logged.qd, &logged.qdd].map(|all| all[joint.0].clone());
@@ -63,15 +83,29 @@ impl JointLaw {
     }
 
     /// How far the joint is behind its drive at each sample [rad, m].
-    fn deflection(&self, motion: &Motion<'_>, values: &[f64]) -> Vec<f64> {
+    fn deflection(&self, motion: &Motion<'_>, inertia: &[f64], values: &[f64]) -> Vec<f64> {
         let (joint, signals) = (self.joint, motion.signals);
-        let load = &motion.load[joint.0];
-        let most = load.iter().fold(0.0_f64, |most, load| most.max(load.abs()));
-        let loads: Vec<f64> =
-            (0..=2 * LOADS).map(|k| REACH * most * (k as f64 / LOADS as f64 - 1.0)).collect();
-        let bends = Bends { deflections: deflections(&self.law, values, &loads), loads };
-        let inertia = self.inertia(motion);
-        bends.along(&signals.t, load, &inertia)
+        let gap = self.law.gives_way(values).zip(self.inertia_at_zero(motion));
+        let gap = gap.and_then(|(way, at_zero)| Some((way, Gap::new(&way, at_zero)?)));
+        let Some((way, gap)) = gap else {
+            return vec![0.0; signals.samples()];
+        };
+        let (_, braked) = way.split(motion.drives[joint.0]);
+        let both = motion.load[joint.0].iter().zip(&signals.qd[joint.0]);
+        let load: Vec<f64> = both.map(|(load, qd)| load + braked.friction(*qd)).collect();
+        gap.along(&signals.t, &load, inertia)
+    }
+
+    /// The inertia of the bodies about the joint where all joints are at 0; none where there is
+    /// none [kg m^2, kg].
+    fn inertia_at_zero(&self, motion: &Motion<'_>) -> Option<f64> {
+        let (nominal, phi) = motion.model;
+        let joints = nominal.model.joints.len();
+        let mut both = vec![vec![0.0; 2]; 3 * joints];
+        both[2 * joints + self.joint.0][1] = 1.0;
+        let torques = nominal.model.torques(&both, &phi.axes).swap_remove(self.joint.0);
+        let inertia = torques[1] - torques[0] - motion.drives[self.joint.0].inertia;
+        (inertia > 0.0).then_some(inertia)
     }
 
     /// The inertia of the bodies about the joint at each sample [kg m^2, kg].
@@ -85,54 +119,54 @@ impl JointLaw {
     }
 }
 
-/// How far a transmission gives way under loads that rest.
-pub(super) fn deflections(law: &EffectLaw, values: &[f64], loads: &[f64]) -> Vec<f64> {
-    let zeros = vec![0.0; loads.len()];
-    let [t, q, qd, qdd, tau] = [zeros.as_slice(); 5];
-    law.logged(&JointSamples { t, q, qd, qdd, tau, tau_load: loads, ..Default::default() }, values)
+/// What is between a drive and its joint.
+struct Gap {
+    /// Half the play [rad, m].
+    half: f64,
+    /// Of the sides [N m/rad, N/m].
+    stiffness: f64,
+    /// Between the sides [N m s/rad, N s/m].
+    drag: f64,
 }
 
-/// Loads of a table of deflections on either side of none.
-const LOADS: usize = 2048;
+/// The swing of sides that hardly give way \[s\]: faster than any filter of logs passes.
+const SHORTEST_S: f64 = 1e-3;
 
-/// What a transmission gives way by under loads that rise.
-struct Bends {
-    loads: Vec<f64>,
-    deflections: Vec<f64>,
-}
+impl Gap {
+    /// None where nothing gives way.
+    fn new(way: &GivesWay, inertia: f64) -> Option<Self> {
+        let swing_s = way.swing_s.max(SHORTEST_S);
+        let stiffness = inertia / (swing_s * swing_s);
+        let gap = Self { half: 0.5 * way.play, stiffness, drag: way.drag * inertia };
+        (way.play > 0.0 || way.swing_s > SHORTEST_S).then_some(gap)
+    }
 
-impl Bends {
-    /// The deflections along loads that would be if the joint moved with its drive, by implicit
-    /// steps of first order. These damp a joint that hits the side of its gap: it does not bounce.
+    /// How far the joint is behind its drive along loads, by implicit steps of first order [rad, m].
     fn along(&self, t: &[f64], load: &[f64], inertia: &[f64]) -> Vec<f64> {
-        let mut before = load.first().map_or(0.0, |load| self.step(*load, 0.0, 0.0));
+        let mut before = load.first().map_or(0.0, |load| self.behind(*load, 0.0));
         let (mut velocity, mut time) = (0.0, t.first().copied().unwrap_or(0.0));
         let of = |((t, load), inertia): ((&f64, &f64), &f64)| {
             let step_s = t - time;
-            // without inertia what is left is the deflection under the load itself
-            let per_load = if *inertia > 0.0 { step_s * step_s / inertia } else { 0.0 };
-            let now = self.step(*load, before + step_s * velocity, per_load);
-            velocity = if step_s > 0.0 { (now - before) / step_s } else { velocity };
+            if step_s <= 0.0 {
+                return before;
+            }
+            // all forces that grow with s alone, and their sum where s is 0
+            let slope = inertia / (step_s * step_s) + self.drag / step_s;
+            let sum = load + slope * before + inertia / step_s * velocity;
+            let now = self.behind(sum, slope);
+            velocity = (now - before) / step_s;
             (before, time) = (now, *t);
             now
         };
         t.iter().zip(load).zip(inertia).map(of).collect()
     }
 
-    /// The deflection D(x) = free + (load - x) per_load, which falls with x where D rises.
-    fn step(&self, load: f64, free: f64, per_load: f64) -> f64 {
-        let beyond = |k: usize| match per_load > 0.0 {
-            true => self.deflections[k] - free - (load - self.loads[k]) * per_load,
-            false => self.loads[k] - load,
-        };
-        let (mut low, mut high) = (0, self.loads.len() - 1);
-        while high - low > 1 {
-            let middle = low.midpoint(high);
-            if beyond(middle) < 0.0 { low = middle } else { high = middle }
-        }
-        let [below, above] = [beyond(low), beyond(high)];
-        let share = if above > below { (-below / (above - below)).clamp(0.0, 1.0) } else { 0.5 };
-        self.deflections[low] + share * (self.deflections[high] - self.deflections[low])
+    /// The deflection s of slope s + k (s beyond the play) = sum.
+    fn behind(&self, sum: f64, slope: f64) -> f64 {
+        let reached = slope * self.half;
+        let beyond = (sum.abs() - reached).max(0.0) / (slope + self.stiffness);
+        let within = if sum.abs() < reached { sum.abs() / slope } else { self.half };
+        (within + beyond).copysign(sum)
     }
 }
 
@@ -140,50 +174,53 @@ impl Bends {
 mod tests {
     use super::*;
 
-    fn bends(of: &dyn Fn(f64) -> f64) -> Bends {
-        let loads: Vec<f64> = (-20_000..=20_000).map(|k| f64::from(k) * 1e-3).collect();
-        Bends { deflections: loads.iter().map(|load| of(*load)).collect(), loads }
+    const INERTIA: f64 = 0.08;
+
+    fn gap(play: f64, swing_s: f64, drag: f64) -> Gap {
+        let way = GivesWay { swing_s, play, damping: 0.0, drag, joint_friction: 0.0 };
+        Gap::new(&way, INERTIA).expect("it gives way")
+    }
+
+    fn along(gap: &Gap, load: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+        let t: Vec<f64> = (0..6000).map(|k| f64::from(k) * 1e-4 - 0.3).collect();
+        let load: Vec<f64> = t.iter().map(|t| load(*t)).collect();
+        let found = gap.along(&t, &load, &vec![INERTIA; t.len()]);
+        t.into_iter().zip(found).collect()
     }
 
     #[test]
     fn a_joint_falls_through_its_gap() {
-        let (half, inertia, slope) = (0.02, 0.08, 5.0);
-        let gap = bends(&|load| half * (load / 1e-4).tanh());
-        let t: Vec<f64> = (0..6000).map(|k| f64::from(k) * 1e-4 - 0.3).collect();
-        let load: Vec<f64> = t.iter().map(|t| slope * t).collect();
-        let found = gap.along(&t, &load, &vec![inertia; t.len()]);
-        // nothing is passed on in the gap: M d'' = slope t, from one side to the other
-        let crosses_s = f64::cbrt(12.0 * inertia * half / slope);
-        for (t, found) in t.iter().zip(&found).filter(|(t, _)| **t < crosses_s - 0.01) {
-            let exact = -half + slope * t.max(0.0).powi(3) / (6.0 * inertia);
+        let (half, slope) = (0.02, 5.0);
+        let found = along(&gap(2.0 * half, 0.0, 0.0), |t| slope * t);
+        // nothing is passed on in the gap: M s'' = slope t, from one side to the other
+        let crosses_s = f64::cbrt(12.0 * INERTIA * half / slope);
+        for (t, found) in found.iter().filter(|(t, _)| *t < crosses_s - 0.01) {
+            let exact = -half + slope * t.max(0.0).powi(3) / (6.0 * INERTIA);
             assert!((found - exact).abs() < 0.01 * half, "{t}: {found}, not {exact}");
         }
-        let caught = found.last().expect("samples");
+        let (_, caught) = found.last().expect("samples");
         assert!((caught - half).abs() < 0.01 * half, "{caught}");
     }
 
     #[test]
-    fn a_joint_on_a_spring_swings_beyond_what_its_load_alone_would_bend() {
-        let (compliance, inertia, speed) = (1e-3, 0.5, 20.0);
-        let spring = bends(&|load| compliance * load);
-        let t: Vec<f64> = (0..100_000).map(|k| f64::from(k) * 1e-5).collect();
-        let load: Vec<f64> = t.iter().map(|t| (speed * t).sin()).collect();
-        let found = spring.along(&t, &load, &vec![inertia; t.len()]);
-        let own = f64::sqrt(1.0 / (inertia * compliance));
-        let most = compliance / (1.0 - (speed / own).powi(2));
-        for (t, found) in t.iter().zip(&found) {
-            let exact = most * ((speed * t).sin() - speed / own * (own * t).sin());
-            assert!((found - exact).abs() < 0.02 * most, "{t}: {found}, not {exact}");
+    fn grease_lets_a_joint_sink_through_its_gap() {
+        // M s'' + c s' = load from rest: after the start s' = load / c
+        let (half, drag, load) = (0.5, 40.0, 2.0);
+        let found = along(&gap(2.0 * half, 0.0, drag), |t| load.copysign(t));
+        let speed = load / (drag * INERTIA);
+        for (t, found) in found.iter().filter(|(t, s)| *t > 0.0 && *s < half - 0.01) {
+            let start = (1.0 - (-drag * t).exp()) / drag;
+            let exact = -half + speed * (t - start);
+            assert!((found - exact).abs() < 0.01 * half, "{t}: {found}, not {exact}");
         }
     }
 
     #[test]
-    fn without_inertia_a_deflection_is_that_of_the_load() {
-        let spring = bends(&|load| 1e-3 * load);
-        let (t, load) = (vec![0.0, 0.1, 0.2], vec![1.0, -2.0, 0.505]);
-        let found = spring.along(&t, &load, &[0.0; 3]);
-        for (found, load) in found.iter().zip(&load) {
-            assert!((found - 1e-3 * load).abs() < 1e-12, "{found}");
-        }
+    fn a_side_gives_way_in_proportion_to_a_slow_load() {
+        let (half, swing_s) = (0.01, 0.02);
+        let gap = gap(2.0 * half, swing_s, 100.0);
+        let compliance = swing_s * swing_s / INERTIA;
+        let (_, found) = *along(&gap, |t| 3.0 + t).last().expect("samples");
+        assert!((found - half - compliance * 3.3).abs() < 0.02 * compliance, "{found}");
     }
 }

@@ -6,7 +6,6 @@ use super::hypothesis::{Hypothesis, Part};
 use super::weighing::{Placed, Weighing, add};
 use denavit_codegen::effect::Occurrence;
 use denavit_evidence::{Glance, Terms, policy};
-use std::cmp::Ordering;
 
 /// One step of a search, for a report.
 #[derive(Clone, Debug)]
@@ -54,12 +53,15 @@ impl<'a> Search<'a> {
     ) -> Self {
         let candidates = weighing.candidates;
         let mut screen: Vec<Vec<Part>> = vec![Vec::new(); candidates.len()];
+        let before = weighing.base.weigh(&[], None, policy::ROUNDS[1]);
+        let glance = Glance::new(&weighing.base, &[], &before.variances);
         for (number, candidate) in candidates.iter().enumerate().skip(given) {
             if !watch(number as f64 / candidates.len() as f64) {
                 break;
             }
             let all = weighing.starts(candidate);
             let log_share = -(all.len().max(1) as f64).ln();
+            let all = weighing.nearest(number, all, &glance);
             let placed = all.iter().filter_map(|start| weighing.start(number, start, log_share));
             screen[number] = placed.map(|(placed, terms)| Part { placed, terms }).collect();
         }
@@ -109,12 +111,9 @@ impl<'a> Search<'a> {
     pub(super) fn is_plainer(&self, one: &Hypothesis, than: &Hypothesis, place: usize) -> bool {
         let [own, other] = [one, than].map(|of| self.candidate(of, place));
         let is_as_good = own.at == other.at && one.posterior > than.posterior - policy::NAMED;
-        let [fewer, more] = [own, other].map(|of| of.law.parameters().len());
-        match own.occurrence.cmp(&other.occurrence) {
-            Ordering::Less => is_as_good || self.is_same(one, than, place),
-            Ordering::Equal => is_as_good && fewer < more,
-            Ordering::Greater => false,
-        }
+        let is_met_more_often = own.occurrence < other.occurrence;
+        own.is_plainer_than(other)
+            && (is_as_good || is_met_more_often && self.is_same(one, than, place))
     }
 
     /// Whether an effect leaves hardly more than that of another hypothesis in the same place.
@@ -192,24 +191,32 @@ impl<'a> Search<'a> {
     ) -> Vec<Hypothesis> {
         let glance = self.glance(now, parts);
         let seen = self.seen(&glance, parts, is_asked);
-        let most = seen.first().map_or(0.0, |(gain, _)| *gain);
-        let far = policy::FAR.max(policy::FAR_SHARE * most);
-        let near = |(gain, _): &&(f64, &Part)| gain.is_finite() && *gain > most - far;
+        let at = |part: &Part| &self.of(part).at;
         let is_rival = |(_, part): &&(f64, &Part)| {
             let gain = |glance: &Glance| glance.see(&part.terms).gain;
-            let at = |part: &Part| &self.weighing.candidates[part.placed.candidate].at;
             rivals_of.is_none_or(|(beside, own)| {
                 at(own) == at(part) || gain(beside) < gain(&glance) - policy::NAMED
             })
         };
-        let chosen = seen.iter().filter(near).filter(is_rival).take(policy::WEIGHED);
-        let mut all: Vec<Hypothesis> = chosen
-            .map(|(_, part)| {
+        let mut all: Vec<Hypothesis> = Vec::new();
+        for (gain, part) in seen.iter().filter(is_rival) {
+            // what a first look promises is not always kept: the best is what was weighed
+            let best = all.iter().map(|one| one.posterior - now.posterior).fold(0.0, f64::max);
+            let is_near = *gain > best - policy::FAR.max(policy::FAR_SHARE * best);
+            let is_plain = |one: &Hypothesis| {
+                let other = self.candidate(one, one.parts.len() - 1);
+                at(part) == &other.at && self.of(part).is_plainer_than(other)
+            };
+            let is_asked = is_near || *gain > policy::NAMED && all.iter().any(is_plain);
+            if all.len() == policy::WEIGHED || !gain.is_finite() {
+                break;
+            }
+            if is_asked {
                 let parts = [parts, &[(*part).clone()]].concat();
                 let first = self.weighed(parts, Some(now), policy::ROUNDS[0]);
-                self.linearised(first, &self.near(part), policy::ROUNDS[0])
-            })
-            .collect();
+                all.push(self.linearised(first, &self.near(part), policy::ROUNDS[0]));
+            }
+        }
         all.sort_by(|a, b| b.posterior.total_cmp(&a.posterior));
         all
     }

@@ -3,10 +3,11 @@
 use super::candidate::{Candidate, Start, starts};
 use super::data::{Data, ModelTorques, RowResponse};
 use super::hypothesis::Part;
+use super::law::{Law, Motion};
 use super::nominal::Nominal;
 use super::spectra::Spectra;
 use super::state::{Effects, Taken};
-use denavit_evidence::{Base, Spectrum, Terms, Unpredicted, policy};
+use denavit_evidence::{Base, Glance, Spectrum, Terms, Unpredicted, policy};
 use denavit_measure::JointIndex;
 
 /// An effect near values of its parameters, with what is believed of them.
@@ -147,6 +148,36 @@ impl<'a> Weighing<'a> {
         (is_felt || start.is_empty()).then_some((placed, terms))
     }
 
+    /// Of many starts of an effect that has no amplitude those that do most for the data where they
+    /// stand: its derivatives by parameters take several times as long as what it does.
+    pub(super) fn nearest(
+        &self,
+        candidate: usize,
+        mut all: Vec<Start>,
+        glance: &Glance,
+    ) -> Vec<Start> {
+        let has_amplitude = |start: &Start| start.iter().any(|(_, given)| given.is_none());
+        if all.len() <= policy::STARTS || all.iter().any(has_amplitude) {
+            return all;
+        }
+        let gain = |start: &Start| {
+            let values: Vec<f64> = start.iter().map(|(value, _)| *value).collect();
+            let law = self.candidates[candidate].law.as_ref();
+            let of = |motion: Motion<'_>| law.torque(motion, &values);
+            let sets = self.sets.iter().zip(&self.torques);
+            let rows: Vec<RowResponse> =
+                sets.map(|(data, torques)| data.in_rows(&of, torques)).collect();
+            let up_to_hz = self.up_to(law.follows_accelerations());
+            let (known, _) = self.spectra.of_response(&self.sets, &rows, up_to_hz);
+            let unpredicted = self.unpredicted(law, &values);
+            glance.see(&Terms { known, unpredicted, ..Terms::default() }).gain
+        };
+        let mut gains: Vec<(f64, Start)> =
+            all.drain(..).map(|start| (gain(&start), start)).collect();
+        gains.sort_by(|a, b| b.0.total_cmp(&a.0));
+        gains.into_iter().take(policy::STARTS).map(|(_, start)| start).collect()
+    }
+
     /// Where the search of a candidate's parameters begins.
     pub(super) fn starts(&self, candidate: &Candidate) -> Vec<Start> {
         let range = candidate.joint.map(|joint| range(&self.sets, joint));
@@ -187,20 +218,20 @@ impl<'a> Weighing<'a> {
             lowest: lowest.collect(),
             is_curved: parameters.iter().map(|parameter| !parameter.linear).collect(),
             believed: believed.collect(),
-            unpredicted: self.unpredicted(placed),
+            unpredicted: self
+                .unpredicted(self.candidates[placed.candidate].law.as_ref(), &placed.values),
             columns,
         }
     }
 
     /// The samples of which an effect says nothing.
-    fn unpredicted(&self, placed: &Placed) -> Unpredicted {
-        let law = self.candidates[placed.candidate].law.as_ref();
+    fn unpredicted(&self, law: &dyn Law, values: &[f64]) -> Unpredicted {
         let (mut cut, mut squares, mut all) = (0.0, 0.0, 0.0);
         for (data, torques) in self.sets.iter().zip(&self.torques) {
             for (signals, torques) in data.signals.iter().zip(torques) {
                 let samples = signals.samples() as f64;
                 let motion = torques.motion(data.nominal, signals);
-                let Unpredicted { share, left } = law.unpredicted(motion, &placed.values);
+                let Unpredicted { share, left } = law.unpredicted(motion, values);
                 cut += samples * share;
                 squares += samples * share * left;
                 all += samples;

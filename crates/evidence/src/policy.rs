@@ -86,6 +86,9 @@ pub const RIVAL: f64 = 4.6;
 /// such a combination changes the evidence by 1e-3.
 pub const LEAST_SHOWN: f64 = 1e-5;
 
+/// Starts of an effect without amplitude whose slopes are looked at, the best ones.
+pub const STARTS: usize = 8;
+
 /// Candidates that are weighed whole after the first look, and the nats below the best from which
 /// on none is.
 pub const WEIGHED: usize = 14;

@@ -2,7 +2,7 @@
 
 use super::paragraph::paragraph;
 use denavit_codegen::effect::{
-    Effect, EffectKind, EffectParameter, EffectSite, Law, Measured, Property, SpringSide,
+    Channel, Effect, EffectKind, EffectParameter, EffectSite, Law, Measured, Property, SpringSide,
     Transmission,
 };
 use denavit_codegen::emit::latex::{Notation, write_expression};
@@ -154,22 +154,8 @@ fn measured_formulas(
         _ => r"\dot{q}",
     };
     let logged = format!(r"{letter}_{{\mathrm{{log}}}}");
-    if let Some(Transmission { swing_s, damping, play }) = measured.transmission {
-        let [swing, damping, play] = [swing_s, damping, play].map(text);
-        let beyond = match play.as_str() {
-            "0" => r"s = \theta - q".to_owned(),
-            play => {
-                format!(r"s = \theta - q \mp \tfrac{{1}}{{2}} {play} \text{{ beyond the play}}")
-            }
-        };
-        let friction = r"f_v \dot{\theta} + f_c \operatorname{sgn} \dot{\theta}";
-        let passed = r"\tau_{\mathrm{load}}";
-        let pressed = format!(r"\frac{{I_a}}{{{swing}^2}} s");
-        let damped = format!(r"\frac{{2 {damping} I_a}}{{{swing}}} \dot{{s}}");
-        return vec![
-            format!(r"I_a \ddot{{\theta}} + {friction} + {passed} = {logged}"),
-            format!(r"{passed} = {pressed} + {damped}, \quad {beyond}"),
-        ];
+    if let Some(transmission) = measured.transmission {
+        return transmission_formulas(dag, transmission, measured.channel, &logged, text);
     }
     if measured.lag_s != dag.zero() {
         let lag = text(measured.lag_s);
@@ -183,6 +169,46 @@ fn measured_formulas(
     }
     let given = if measured.is_inverse { format!(r"{letter}_{{\mathrm{{true}}}}") } else { logged };
     vec![format!("{given} = {}", text(measured.value))]
+}
+
+/// What moves behind a transmission: the rotor where the torque is the drive's, or else the joint.
+fn transmission_formulas(
+    dag: &Dag,
+    transmission: Transmission,
+    channel: Channel,
+    logged: &str,
+    text: &dyn Fn(ExprId) -> String,
+) -> Vec<String> {
+    let Transmission { swing_s, damping, play, drag, .. } = transmission;
+    let is_torque = channel == Channel::Torque;
+    let inertia = if is_torque { "I_a" } else { "I_0" };
+    let beyond = match play == dag.zero() {
+        true => String::new(),
+        false => format!(r" \mp \tfrac{{1}}{{2}} {} \text{{ beyond the play}}", text(play)),
+    };
+    let mut passed = vec![format!(r"\frac{{{inertia}}}{{{}^2}} s", text(swing_s))];
+    if damping != dag.zero() {
+        let swing = text(swing_s);
+        passed.push(format!(r"\frac{{2 {} {inertia}}}{{{swing}}} \dot{{s}}", text(damping)));
+    }
+    if drag != dag.zero() {
+        let rate = r"(\dot{\theta} - \dot{q})";
+        passed.push(format!(r"{} {inertia} {rate}", text(drag)));
+    }
+    let passed = passed.join(" + ");
+    match is_torque {
+        true => {
+            let friction = r"f_v \dot{\theta} + f_c \operatorname{sgn} \dot{\theta}";
+            vec![
+                format!(r"I_a \ddot{{\theta}} + {friction} + \tau_{{\mathrm{{load}}}} = {logged}"),
+                format!(r"\tau_{{\mathrm{{load}}}} = {passed}, \quad s = \theta - q{beyond}"),
+            ]
+        }
+        false => vec![
+            format!(r"\tau_{{\mathrm{{load}}}} = {passed}, \quad s = \theta - q{beyond}"),
+            format!(r"{logged} = \theta"),
+        ],
+    }
 }
 
 fn property_text(property: Property) -> String {

@@ -86,7 +86,8 @@ impl EffectLaw {
         lagged(samples.t, &shifted(samples.t, &value, delay), lag)
     }
 
-    /// The true channel where the samples are what is logged, the other columns being true.
+    /// The true channel where the samples are what is logged, the other columns being true. Of a
+    /// joint behind a transmission it is what is logged: how far it is behind is not found here.
     pub fn corrected(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<f64> {
         let Some(law) = &self.channel else { return samples.tau.to_vec() };
         let [delay, lag] = self.timing(law, values);
@@ -98,7 +99,7 @@ impl EffectLaw {
             wanted.iter_mut().zip(rate).for_each(|(y, rate)| *y += lag * rate);
         }
         let wanted = shifted(samples.t, &wanted, -delay);
-        if law.transmission.is_some() {
+        if law.transmission.is_some() && law.is_inverse {
             let Some(through) = self.through(samples, values) else { return wanted };
             return wanted.iter().zip(through.torque).map(|(logged, more)| logged - more).collect();
         }

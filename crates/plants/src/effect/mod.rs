@@ -215,7 +215,7 @@ impl EffectLaw {
     /// Whether a position is read before something that gives way: it is that of the drive.
     pub fn is_read_at_drive(&self) -> bool {
         let uses_load = self.columns.iter().any(|&column| COLUMNS[column] == "tau_load");
-        self.channel() == Some(Channel::Position) && uses_load
+        self.channel() == Some(Channel::Position) && (uses_load || self.is_transmission())
     }
 
     /// Whether the law is made of accelerations, or changes a logged torque in proportion or in

@@ -5,10 +5,10 @@
 //! pressed:
 //!
 //! ```text
-//! I th'' = tau - off - fv th' - fc sgn(th') - T,   T = k s + d s' beyond half the play,
+//! I th'' = tau - off - fv th' - fc sgn(th') - T,   T = c s' + k s + d s',
 //! ```
 //!
-//! with s how far th is ahead of q beyond the play. Steps are short against the swing of the rotor
+//! with s how far th is ahead of q, k and d only beyond half the play, where k counts what is beyond. Steps are short against the swing of the rotor
 //! on the transmission; the position of the joint is the cubic of positions and rates between
 //! samples. Friction holds a rotor that it stops within a step. What reaches the joint is T.
 //!
@@ -57,13 +57,17 @@ impl Drive {
 
     /// What a drive takes that moves with its joint, at a sample [N m, N].
     fn rigid(&self, samples: &JointSamples<'_>, k: usize) -> f64 {
-        let qd = samples.qd[k];
+        self.inertia * samples.qdd[k] + self.friction(samples.qd[k]) + self.offset
+    }
+
+    /// Friction at a velocity [N m, N].
+    pub fn friction(&self, qd: f64) -> f64 {
         let sign = if qd == 0.0 { 0.0 } else { qd.signum() };
-        self.inertia * samples.qdd[k] + self.viscous * qd + self.coulomb * sign + self.offset
+        self.viscous * qd + self.coulomb * sign
     }
 }
 
-/// The law of a transmission: swing \[s\], play and damping by the parameters.
+/// The law of a transmission: swing \[s\], play, damping and drag by the parameters.
 #[derive(Clone, Debug)]
 pub(super) struct TransmissionLaw(LawProgram);
 
@@ -80,23 +84,27 @@ const DIFFERENCE: f64 = 0.02;
 
 impl TransmissionLaw {
     pub(super) fn new(dag: &Dag, effect: &Effect, of: Transmission) -> Result<Self, Error> {
-        let entries = vec![of.swing_s, of.play, of.damping];
+        let entries = vec![of.swing_s, of.play, of.damping, of.drag, of.joint_friction];
         Ok(Self(LawProgram::new(dag, &names(effect), Vec::new(), entries)?))
     }
 
     /// The transmission with these values.
     fn at(&self, values: &[f64]) -> GivesWay {
         let entries = self.0.run(&[], values, 1);
-        let [swing_s, play, damping] = [0, 1, 2].map(|place| entries[place][0]);
-        GivesWay { swing_s, play, damping }
+        let [swing_s, play, damping, drag, joint_friction] =
+            [0, 1, 2, 3, 4].map(|place| entries[place][0]);
+        GivesWay { swing_s, play, damping, drag, joint_friction }
     }
 
     /// The rotor with these values on its way along samples; none where the transmission hardly
     /// gives way.
     fn rotor(&self, drive: Drive, values: &[f64]) -> Option<Rotor> {
-        let GivesWay { swing_s, play, damping } = self.at(values);
+        let way = self.at(values);
+        let GivesWay { swing_s, play, damping, drag, .. } = way;
+        let drive = way.split(drive).0;
         let gives_way = swing_s > SHORTEST_S || play > 0.0;
-        let rotor = Rotor { drive, swing_s: swing_s.max(SHORTEST_S), damping, half: 0.5 * play };
+        let (swing_s, half) = (swing_s.max(SHORTEST_S), 0.5 * play);
+        let rotor = Rotor { drive, swing_s, damping, drag, half };
         (gives_way && drive.inertia > 0.0).then_some(rotor)
     }
 }
@@ -106,6 +114,7 @@ struct Rotor {
     drive: Drive,
     swing_s: f64,
     damping: f64,
+    drag: f64,
     half: f64,
 }
 
@@ -130,9 +139,9 @@ impl Rotor {
                 let torque = tau[k - 1] + u * (tau[k] - tau[k - 1]) - offset;
                 let ahead = position - joint[0];
                 let beyond = ahead - ahead.clamp(-half, half);
-                let mut reaches = 0.0;
+                let mut reaches = self.drag * inertia * (rate - joint[1]);
                 if beyond != 0.0 {
-                    reaches = stiffness * beyond + damping * (rate - joint[1]);
+                    reaches += stiffness * beyond + damping * (rate - joint[1]);
                 }
                 let free = rate + h * (torque - viscous * rate - reaches) / inertia;
                 // an estimate may be below 0, and friction pushes nothing
@@ -208,12 +217,30 @@ impl EffectLaw {
 /// How a transmission gives way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GivesWay {
-    /// Root of the rotor's inertia times the compliance \[s\].
+    /// Root of the inertia times the compliance \[s\]: of the rotor where the position is the
+    /// joint's, else of the bodies.
     pub swing_s: f64,
     /// The play, from one side to the other [rad, m].
     pub play: f64,
     /// The damping of the rotor, as a share of the critical one.
     pub damping: f64,
+    /// What the sides drag each other along by, over inertia and difference in velocity \[1/s\].
+    pub drag: f64,
+    /// The share of the drive's friction that brakes the joint instead.
+    pub joint_friction: f64,
+}
+
+impl GivesWay {
+    /// A drive with the friction that is its own, and one that has what brakes the joint alone.
+    pub fn split(&self, drive: Drive) -> (Drive, Drive) {
+        let of = |share: f64, drive: Drive| Drive {
+            viscous: share * drive.viscous,
+            coulomb: share * drive.coulomb,
+            ..drive
+        };
+        let braked = Drive { inertia: 0.0, offset: 0.0, ..drive };
+        (of(1.0 - self.joint_friction, drive), of(self.joint_friction, braked))
+    }
 }
 
 /// What a transmission makes of a drive's torque.

@@ -56,7 +56,7 @@ fn what_an_elastic_transmission_passes_on_is_its_transfer_function() {
     // friction whose estimate is below 0 pushes nothing
     for coulomb in [0.0, -0.1] {
         let drive = Drive { coulomb, ..samples.drive };
-        let found = law.torque(&JointSamples { drive, ..samples }, &[swing, zeta]);
+        let found = law.torque(&JointSamples { drive, ..samples }, &[swing, zeta, 0.0]);
         for (t, found) in t.iter().zip(found).skip(4000) {
             let (sine, cosine) = (w * t).sin_cos();
             let at = |[re, im]: [f64; 2]| re * sine + im * cosine;
@@ -85,7 +85,7 @@ fn a_rotor_crosses_its_play_in_the_time_of_free_motion() {
         ..JointSamples::default()
     };
     for gap in [0.01, 0.03] {
-        let through = law.through(&samples, &[gap, 0.002, 1.0]).expect("it gives way");
+        let through = law.through(&samples, &[gap, 0.002, 1.0, 0.0, 0.0]).expect("it gives way");
         // where it hits the other side more reaches the joint than without play
         let hit = (2005..4000).find(|&k| through.torque[k] > 0.0).expect("it hits");
         let crossed_s = t[hit] - 2.0;
@@ -97,4 +97,36 @@ fn a_rotor_crosses_its_play_in_the_time_of_free_motion() {
         let [before, after] = [1990, 3990].map(|k: usize| through.torque[k]);
         assert!(before.abs() < 1e-3 && after.abs() < 1e-3, "{before} {after}");
     }
+}
+
+/// In its play a rotor is dragged along by the joint: I v' = tau - c I v from one side, so that the
+/// joint, which stands, feels c I v. Friction that brakes the joint does not brake the rotor.
+#[test]
+fn drag_is_passed_on_within_the_play_and_friction_of_the_joint_stays_there() {
+    let law = law("play");
+    let t = times(4000);
+    let rest = vec![0.0; t.len()];
+    let tau: Vec<f64> = t.iter().map(|&t| if t < 2.0 { 1.0 } else { -1.0 }).collect();
+    let (gap, drag) = (0.05, 20.0);
+    let of = |coulomb: f64, values: [f64; 5]| {
+        let drive = Drive { inertia: INERTIA, viscous: 0.0, coulomb, offset: 0.0 };
+        let [q, qd, qdd] = [rest.as_slice(); 3];
+        let samples = JointSamples { t: &t, q, qd, qdd, tau: &tau, drive, ..Default::default() };
+        law.through(&samples, &values).expect("it gives way").torque
+    };
+    let found = of(0.0, [gap, 0.002, 1.0, drag, 0.0]);
+    let position = |s: f64| (s - (1.0 - (-drag * s).exp()) / drag) / (drag * INERTIA);
+    let crossing = (2010..4000).take_while(|&k| position(t[k] - 2.0) < 0.9 * gap);
+    let mut crossed = 0;
+    for k in crossing {
+        // a stiff transmission passes all of -1 on
+        let expected = -1.0 + (1.0 - (-drag * (t[k] - 2.0)).exp());
+        assert!((found[k] - expected).abs() < 0.02, "{}: {} is not {expected}", t[k], found[k]);
+        crossed += 1;
+    }
+    assert!(crossed > 20, "{crossed}");
+    let [own, joint] = [0.0, 1.0].map(|share| of(0.4, [gap, 0.002, 1.0, drag, share]));
+    let late = |torque: &[f64]| (2010..4000).find(|&k| torque[k] > 0.0).expect("it hits");
+    assert!(late(&own) > late(&joint) + 5, "{} {}", late(&own), late(&joint));
+    assert_eq!(late(&joint), late(&found));
 }

@@ -26,9 +26,10 @@ enum Acts {
     Elastic,
     /// It stands between a position or velocity and its log (`reading_law.rs`).
     Reading,
-    /// The same, of a joint that crosses a gap behind its drive: what it is behind is not in
-    /// proportion to its load.
+    /// The same, of a joint that crosses a gap behind its drive.
     Gap,
+    /// The same, of a joint that swings behind its drive without a gap.
+    Swing,
 }
 
 /// An effect on one joint, or on a pair.
@@ -76,7 +77,8 @@ impl JointLaw {
     pub(super) fn new(law: EffectLaw, joint: JointIndex, other: Option<JointIndex>) -> Self {
         let acts = match law.channel() {
             None if law.at == EffectSite::Spring => Acts::Spring,
-            Some(Channel::Position) if law.is_transmission() => Acts::Gap,
+            Some(Channel::Position) if law.has_play() => Acts::Gap,
+            Some(Channel::Position) if law.is_transmission() => Acts::Swing,
             Some(Channel::Torque) if law.has_play() => Acts::Play,
             Some(Channel::Torque) if law.is_transmission() => Acts::Elastic,
             Some(Channel::Torque) if law.is_inverse() => Acts::Demand,
@@ -182,7 +184,8 @@ impl Law for JointLaw {
     fn follows_accelerations(&self) -> bool {
         match self.acts {
             Acts::Torque => self.law.follows_accelerations(),
-            Acts::Delay | Acts::Play | Acts::Reading => true,
+            // A joint that swings is behind in proportion to its load, and to the noise of that.
+            Acts::Delay | Acts::Play | Acts::Reading | Acts::Swing => true,
             // How a joint falls through its gap is integrated, and has no noise of accelerations.
             Acts::Spring | Acts::Demand | Acts::Elastic | Acts::Gap => false,
         }
@@ -217,13 +220,13 @@ impl Law for JointLaw {
             Acts::Play => self.through_play(&motion, values).unwrap_or_else(nothing),
             Acts::Elastic => self.through_spring(&motion, values).unwrap_or_else(nothing),
             Acts::Reading => self.read(&motion, values, false),
-            Acts::Gap => self.read(&motion, values, true),
+            Acts::Gap | Acts::Swing => self.read(&motion, values, true),
         }
     }
 
     fn torque(&self, motion: Motion<'_>, values: &[f64]) -> Response {
         match self.acts {
-            Acts::Gap => self.read_torque(&motion, values),
+            Acts::Gap | Acts::Swing => self.read_torque(&motion, values),
             _ => Response { gradient: Vec::new(), ..self.response(motion, values) },
         }
     }

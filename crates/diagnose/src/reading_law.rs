@@ -205,8 +205,8 @@ mod tests {
     #[test]
     fn grease_lets_a_joint_sink_through_its_gap() {
         // M s'' + c s' = load from rest: after the start s' = load / c
-        let (half, drag, load) = (0.5, 40.0, 2.0);
-        let found = along(&gap(2.0 * half, 0.0, drag), |t| load.copysign(t));
+        let (half, drag, load) = (0.5, 40.0, 2.0_f64);
+        let found = along(&gap(2.0 * half, 0.0, drag), |t| f64::copysign(load, t));
         let speed = load / (drag * INERTIA);
         for (t, found) in found.iter().filter(|(t, s)| *t > 0.0 && *s < half - 0.01) {
             let start = (1.0 - (-drag * t).exp()) / drag;

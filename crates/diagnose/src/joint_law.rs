@@ -28,8 +28,8 @@ enum Acts {
     Reading,
     /// The same, of a joint that crosses a gap behind its drive.
     Gap,
-    /// The same, of a joint that swings behind its drive without a gap.
-    Swing,
+    /// The same, of a joint that a spring without a gap holds behind its drive.
+    Sprung,
 }
 
 /// An effect on one joint, or on a pair.
@@ -78,7 +78,7 @@ impl JointLaw {
         let acts = match law.channel() {
             None if law.at == EffectSite::Spring => Acts::Spring,
             Some(Channel::Position) if law.has_play() => Acts::Gap,
-            Some(Channel::Position) if law.is_transmission() => Acts::Swing,
+            Some(Channel::Position) if law.is_transmission() => Acts::Sprung,
             Some(Channel::Torque) if law.has_play() => Acts::Play,
             Some(Channel::Torque) if law.is_transmission() => Acts::Elastic,
             Some(Channel::Torque) if law.is_inverse() => Acts::Demand,
@@ -184,8 +184,8 @@ impl Law for JointLaw {
     fn follows_accelerations(&self) -> bool {
         match self.acts {
             Acts::Torque => self.law.follows_accelerations(),
-            // A joint that swings is behind in proportion to its load, and to the noise of that.
-            Acts::Delay | Acts::Play | Acts::Reading | Acts::Swing => true,
+            // A joint on a spring is behind in proportion to its load, and to the noise of that.
+            Acts::Delay | Acts::Play | Acts::Reading | Acts::Sprung => true,
             // How a joint falls through its gap is integrated, and has no noise of accelerations.
             Acts::Spring | Acts::Demand | Acts::Elastic | Acts::Gap => false,
         }
@@ -220,13 +220,13 @@ impl Law for JointLaw {
             Acts::Play => self.through_play(&motion, values).unwrap_or_else(nothing),
             Acts::Elastic => self.through_spring(&motion, values).unwrap_or_else(nothing),
             Acts::Reading => self.read(&motion, values, false),
-            Acts::Gap | Acts::Swing => self.read(&motion, values, true),
+            Acts::Gap | Acts::Sprung => self.read(&motion, values, true),
         }
     }
 
     fn torque(&self, motion: Motion<'_>, values: &[f64]) -> Response {
         match self.acts {
-            Acts::Gap | Acts::Swing => self.read_torque(&motion, values),
+            Acts::Gap | Acts::Sprung => self.read_torque(&motion, values),
             _ => Response { gradient: Vec::new(), ..self.response(motion, values) },
         }
     }

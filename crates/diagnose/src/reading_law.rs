@@ -23,8 +23,13 @@ use denavit_plants::effect::GivesWay;
 impl JointLaw {
     /// What is between a position or velocity and its log: the model was given what is logged, and
     /// gives other torques for what is true.
-    pub(super) fn read(&self, motion: &Motion<'_>, values: &[f64], has_gap: bool) -> Response {
-        let inertia = self.inertia_behind(motion, has_gap);
+    pub(super) fn read(
+        &self,
+        motion: &Motion<'_>,
+        values: &[f64],
+        is_read_at_drive: bool,
+    ) -> Response {
+        let inertia = self.inertia_behind(motion, is_read_at_drive);
         let of = |values: &[f64]| self.of_truth(motion, values, inertia.as_ref());
         let step = |place: usize| {
             let sizes = self.law.parameters[place].start.iter().map(|start| start.abs());
@@ -43,10 +48,15 @@ impl JointLaw {
         Response { equations: (0..torque.len()).collect(), torque, gradient: Vec::new() }
     }
 
-    /// The inertia of bodies behind a gap, which a motor that is measured is not.
-    fn inertia_behind(&self, motion: &Motion<'_>, has_gap: bool) -> Option<Vec<f64>> {
-        let is_behind = has_gap && motion.signals.motor[self.joint.0].is_none();
-        is_behind.then(|| self.inertia(motion))
+    /// The inertia of bodies behind a transmission, which a motor that is measured is not. A joint
+    /// on a spring without a gap is taken to follow its load, slower than it swings: one that
+    /// swings would take the noise of an encoder out of its position.
+    fn inertia_behind(&self, motion: &Motion<'_>, is_read_at_drive: bool) -> Option<Vec<f64>> {
+        let is_behind = is_read_at_drive && motion.signals.motor[self.joint.0].is_none();
+        is_behind.then(|| match self.law.has_play() {
+            true => self.inertia(motion),
+            false => vec![0.0; motion.signals.samples()],
+        })
     }
 
     /// What the torques of the true motion have more than those of the logged one.
@@ -182,7 +192,7 @@ mod tests {
     }
 
     fn along(gap: &Gap, load: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-        let t: Vec<f64> = (0..6000).map(|k| f64::from(k) * 1e-4 - 0.3).collect();
+        let t: Vec<f64> = (0..600).map(|k| f64::from(k) * 1e-3 - 0.3).collect();
         let load: Vec<f64> = t.iter().map(|t| load(*t)).collect();
         let found = gap.along(&t, &load, &vec![INERTIA; t.len()]);
         t.into_iter().zip(found).collect()
@@ -196,7 +206,7 @@ mod tests {
         let crosses_s = f64::cbrt(12.0 * INERTIA * half / slope);
         for (t, found) in found.iter().filter(|(t, _)| *t < crosses_s - 0.01) {
             let exact = -half + slope * t.max(0.0).powi(3) / (6.0 * INERTIA);
-            assert!((found - exact).abs() < 0.01 * half, "{t}: {found}, not {exact}");
+            assert!((found - exact).abs() < 0.02 * half, "{t}: {found}, not {exact}");
         }
         let (_, caught) = found.last().expect("samples");
         assert!((caught - half).abs() < 0.01 * half, "{caught}");
@@ -218,9 +228,12 @@ mod tests {
     #[test]
     fn a_side_gives_way_in_proportion_to_a_slow_load() {
         let (half, swing_s) = (0.01, 0.02);
-        let gap = gap(2.0 * half, swing_s, 100.0);
+        let drag = 100.0;
+        let gap = gap(2.0 * half, swing_s, drag);
         let compliance = swing_s * swing_s / INERTIA;
         let (_, found) = *along(&gap, |t| 3.0 + t).last().expect("samples");
-        assert!((found - half - compliance * 3.3).abs() < 0.02 * compliance, "{found}");
+        // late by c / k
+        let load = 3.299 - drag * swing_s * swing_s;
+        assert!((found - half - compliance * load).abs() < 0.01 * compliance, "{found}");
     }
 }

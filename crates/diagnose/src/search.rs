@@ -201,13 +201,14 @@ impl<'a> Search<'a> {
         let mut all: Vec<Hypothesis> = Vec::new();
         for (gain, part) in seen.iter().filter(is_rival) {
             // what a first look promises is not always kept: the best is what was weighed
-            let best = all.iter().map(|one| one.posterior - now.posterior).fold(0.0, f64::max);
-            let is_near = *gain > best - policy::FAR.max(policy::FAR_SHARE * best);
+            let best = all.iter().max_by(|a, b| a.posterior.total_cmp(&b.posterior));
+            let most = best.map_or(0.0, |one| (one.posterior - now.posterior).max(0.0));
+            let is_near = *gain > most - policy::FAR.max(policy::FAR_SHARE * most);
             let is_plain = |one: &Hypothesis| {
                 let other = self.candidate(one, one.parts.len() - 1);
                 at(part) == &other.at && self.of(part).is_plainer_than(other)
             };
-            let is_asked = is_near || *gain > policy::NAMED && all.iter().any(is_plain);
+            let is_asked = is_near || *gain > policy::NAMED && best.is_some_and(is_plain);
             if all.len() == policy::WEIGHED || !gain.is_finite() {
                 break;
             }

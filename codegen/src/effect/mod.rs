@@ -167,9 +167,9 @@ impl Channel {
 }
 
 /// What joins a drive to its joint. Where the torque that is logged is the drive's and the position
-/// the joint's, the rotor moves otherwise than the joint; where both are the drive's, the joint does.
-/// Numbers are over the inertia of what moves: of the rotor, or of the bodies about the joint where
-/// all joints are at 0.
+/// the joint's, the rotor moves otherwise than the joint; where both are the drive's, the joint
+/// does. Numbers are over the inertia of what moves: of the rotor, or of the bodies about the joint
+/// where all joints are at 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Transmission {
     /// The root of that inertia times the compliance \[s\]: one over the angular frequency of the
@@ -182,7 +182,8 @@ pub struct Transmission {
     /// What the sides drag each other along by, also within the play, over the inertia and their
     /// difference in velocity \[1/s\].
     pub drag: ExprId,
-    /// The share of the drive's friction that brakes the joint instead: of bearings, not of a motor.
+    /// The share of the drive's friction that brakes the joint instead: of bearings, not of a
+    /// motor.
     pub joint_friction: ExprId,
 }
 

@@ -1,16 +1,17 @@
 //! Effects that stand between a position or velocity and its log.
 //!
-//! Play after the encoder is one: the drive is where it is read, and the joint is behind it by s. It
-//! moves by what passes through the gap: a drag, and what a side that gives way a little presses
+//! Play after the encoder is one: the drive is where it is read, and the joint is behind it by s.
+//! It moves by what passes through the gap: a drag, and what a side that gives way a little presses
 //! with beyond half the play.
 //!
 //! ```text
 //! M s'' = load - c s' - k (s beyond the play),   logged = q + s
 //! ```
 //!
-//! The load is that of the logged motion, with the friction that brakes the joint and not its drive, M the inertia of the bodies about the joint; k and c are
-//! over that inertia where all joints are at 0, so that they do not change with the posture. Steps
-//! in time are implicit, which damps what swings faster than they are.
+//! The load is that of the logged motion, with the friction that brakes the joint and not its
+//! drive, M the inertia of the bodies about the joint; k and c are over that inertia where all
+//! joints are at 0, so that they do not change with the posture. Steps in time are implicit, which
+//! damps what swings faster than they are.
 
 use super::joint_law::{JointLaw, samples};
 use super::law::{Motion, Response, differences};
@@ -151,7 +152,8 @@ impl Gap {
         (way.play > 0.0 || way.swing_s > SHORTEST_S).then_some(gap)
     }
 
-    /// How far the joint is behind its drive along loads, by implicit steps of first order [rad, m].
+    /// How far the joint is behind its drive along loads, by implicit steps of first order [rad,
+    /// m].
     fn along(&self, t: &[f64], load: &[f64], inertia: &[f64]) -> Vec<f64> {
         let mut before = load.first().map_or(0.0, |load| self.behind(*load, 0.0));
         let (mut velocity, mut time) = (0.0, t.first().copied().unwrap_or(0.0));

@@ -208,8 +208,8 @@ mod tests {
         let crosses_s = f64::cbrt(12.0 * INERTIA * half / slope);
         for (t, found) in found.iter().filter(|(t, _)| *t < crosses_s - 0.01) {
             let exact = -half + slope * t.max(0.0).powi(3) / (6.0 * INERTIA);
-            // of first order: a step of time is 0.02 of half the play there
-            assert!((found - exact).abs() < 0.03 * half, "{t}: {found}, not {exact}");
+            // of first order: a step of time is 0.035 of half the play there
+            assert!((found - exact).abs() < 0.04 * half, "{t}: {found}, not {exact}");
         }
         let (_, caught) = found.last().expect("samples");
         assert!((caught - half).abs() < 0.01 * half, "{caught}");

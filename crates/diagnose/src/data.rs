@@ -2,6 +2,7 @@
 
 use super::known::weights;
 use super::law::{Law, Motion, Response};
+use super::load_slopes::LoadSlopes;
 use super::nominal::{Nominal, Phi};
 use super::rows::{LogRows, PerJoint, behind_springs, of_axes, torques};
 use super::signals::Signals;
@@ -11,7 +12,9 @@ use denavit_evidence::policy;
 use denavit_measure::{JointIndex, LogIndex};
 use denavit_numerics::derivative;
 use denavit_plants::effect::Drive;
+use std::cell::RefCell;
 use std::ops::Range;
+use std::rc::Rc;
 
 /// A stretch of rows: those of one equation in one log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,6 +75,7 @@ pub(super) struct ModelTorques {
     pub(super) total: PerJoint,
     /// The numbers of each joint's drive.
     pub(super) drives: Vec<Drive>,
+    slopes: RefCell<Option<Rc<LoadSlopes>>>,
 }
 
 impl<'a> Data<'a> {
@@ -280,7 +284,7 @@ impl ModelTorques {
         let rate = |load: &Vec<f64>| derivative(load, signals.step_s);
         let load_rate = load.iter().map(rate).collect();
         let total = torques(nominal, signals, &phi);
-        Self { phi, numbers, load, load_rate, total, drives }
+        Self { phi, numbers, load, load_rate, total, drives, slopes: RefCell::default() }
     }
 
     /// The motion of a log with these torques.
@@ -289,7 +293,7 @@ impl ModelTorques {
         nominal: &'m Nominal<'m>,
         signals: &'m Signals,
     ) -> Motion<'m> {
-        let Self { phi, numbers, load, load_rate, total, drives } = self;
-        Motion { model: (nominal, phi), numbers, signals, load, load_rate, total, drives }
+        let Self { phi, numbers, load, load_rate, total, drives, slopes } = self;
+        Motion { model: (nominal, phi), numbers, signals, load, load_rate, total, drives, slopes }
     }
 }

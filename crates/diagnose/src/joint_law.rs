@@ -26,7 +26,7 @@ enum Acts {
     Elastic,
     /// It stands between a position or velocity and its log (`reading_law.rs`).
     Reading,
-    /// The same, of a joint that crosses a gap behind its drive.
+    /// The same, of a joint that crosses a gap behind its drive (`behind_law.rs`).
     Gap,
     /// The same, of a joint that a spring without a gap holds behind its drive.
     Sprung,
@@ -219,16 +219,18 @@ impl Law for JointLaw {
             }
             Acts::Play => self.through_play(&motion, values).unwrap_or_else(nothing),
             Acts::Elastic => self.through_spring(&motion, values).unwrap_or_else(nothing),
-            Acts::Reading => self.read(&motion, values, false),
-            Acts::Gap | Acts::Sprung => self.read(&motion, values, true),
+            Acts::Reading => self.read(&motion, values),
+            Acts::Gap | Acts::Sprung => self.behind(&motion, values).unwrap_or_else(nothing),
         }
     }
 
     fn torque(&self, motion: Motion<'_>, values: &[f64]) -> Response {
-        match self.acts {
-            Acts::Gap | Acts::Sprung => self.read_torque(&motion, values),
-            _ => Response { gradient: Vec::new(), ..self.response(motion, values) },
-        }
+        let first = match self.acts {
+            Acts::Gap | Acts::Sprung => self.behind_torque(&motion, values),
+            _ => None,
+        };
+        let whole = || Response { gradient: Vec::new(), ..self.response(motion, values) };
+        first.unwrap_or_else(whole)
     }
 }
 

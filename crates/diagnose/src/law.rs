@@ -1,11 +1,15 @@
 //! What an effect does to the torques of a log: its law on numbers.
 
 use super::given::Belief;
+use super::load_slopes::LoadSlopes;
 use super::nominal::{Nominal, Phi};
-use super::rows::{PerJoint, torques};
+use super::rows::{PerJoint, of_axes, torques};
 use super::signals::Signals;
 use denavit_evidence::Unpredicted;
+use denavit_measure::JointIndex;
 use denavit_plants::effect::{Drive, LawParameter};
+use std::cell::RefCell;
+use std::rc::Rc;
 
 /// What a law may depend on: the motion of a log and the torques that the model gives it; those
 /// that were measured only where a law cuts them.
@@ -25,9 +29,44 @@ pub struct Motion<'a> {
     pub total: &'a PerJoint,
     /// The numbers of each joint's drive.
     pub drives: &'a [Drive],
+    /// The slopes that were asked for last: laws of one joint are looked at one after the other.
+    pub(super) slopes: &'a RefCell<Option<Rc<LoadSlopes>>>,
 }
 
 impl Motion<'_> {
+    /// What loads change by where a joint moves a little otherwise.
+    pub(super) fn load_slopes(&self, joint: JointIndex) -> Rc<LoadSlopes> {
+        let last = self.slopes.borrow().clone().filter(|slopes| slopes.joint == joint);
+        last.unwrap_or_else(|| {
+            let (nominal, phi) = self.model;
+            let slopes = Rc::new(LoadSlopes::new(nominal, self.signals, phi, joint));
+            self.slopes.replace(Some(Rc::clone(&slopes)));
+            slopes
+        })
+    }
+
+    /// What bodies ask of all equations more in another motion, whose drives move as in this one
+    /// [N m, N].
+    pub(super) fn loads_beyond(&self, signals: &Signals) -> PerJoint {
+        let (nominal, phi) = self.model;
+        let mut loads = of_axes(nominal, signals, &phi.loads, true);
+        let both = loads.iter_mut().flatten().zip(self.load.iter().flatten());
+        both.for_each(|(load, own)| *load -= own);
+        let sprung = nominal.springs.iter().map(|spring| loads[spring.joint.0].clone());
+        loads.extend(sprung.collect::<PerJoint>());
+        loads
+    }
+
+    /// The inertia of the bodies about a joint where all joints are at 0 [kg m^2, kg].
+    pub(super) fn inertia_at_zero(&self, joint: JointIndex) -> f64 {
+        let (nominal, phi) = self.model;
+        let joints = nominal.model.joints.len();
+        let mut both = vec![vec![0.0; 2]; 3 * joints];
+        both[2 * joints + joint.0][1] = 1.0;
+        let torques = nominal.model.torques(&both, &phi.axes).swap_remove(joint.0);
+        torques[1] - torques[0] - self.drives[joint.0].inertia
+    }
+
     /// The torques that the model without effects gives another motion [N m, N].
     pub fn torques_of(&self, signals: &Signals) -> PerJoint {
         torques(self.model.0, signals, self.model.1)

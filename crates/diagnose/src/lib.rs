@@ -7,6 +7,7 @@
 //! - [`Candidate`], [`Law`]: what may be missing
 //! - [`diagnose()`]: which effects are missing, by their evidence
 
+mod behind_law;
 mod between;
 mod candidate;
 mod catalogue;
@@ -33,6 +34,7 @@ mod known;
 mod law;
 mod law_curve;
 mod leftover;
+mod load_slopes;
 mod nominal;
 mod policy;
 mod reading_law;

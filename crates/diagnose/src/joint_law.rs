@@ -110,7 +110,7 @@ impl JointLaw {
                 // What the link feels the spring passes on.
                 equations.push(spring);
             }
-            let (torque, gradient) = (law.torque(&samples, values), law.gradient(&samples, values));
+            let (torque, gradient) = law.torque_and_gradient(&samples, values);
             response.gradient.resize(gradient.len(), Vec::new());
             for equation in equations {
                 response.equations.push(equation);
@@ -133,8 +133,8 @@ impl JointLaw {
         let Some((equation, [q, qd])) = both else { return Response::default() };
         let samples = JointSamples { t: &signals.t, q: &q, qd: &qd, ..JointSamples::default() };
         let less = |column: Vec<f64>| column.iter().map(|torque| -torque).collect();
-        let gradient = self.law.gradient(&samples, values).into_iter().map(less);
-        Response::of(equation, less(self.law.torque(&samples, values)), gradient)
+        let (torque, gradient) = self.law.torque_and_gradient(&samples, values);
+        Response::of(equation, less(torque), gradient.into_iter().map(less))
     }
 
     /// What was demanded more than was given.
@@ -146,8 +146,7 @@ impl JointLaw {
     fn demanded(&self, motion: &Motion<'_>, values: &[f64]) -> Response {
         let measured = self.measured(motion);
         let samples = JointSamples { tau: &measured, ..samples(motion, self.joint, None) };
-        let mut torque = self.law.torque(&samples, values);
-        let mut gradient = self.law.gradient(&samples, values);
+        let (mut torque, mut gradient) = self.law.torque_and_gradient(&samples, values);
         let lacks: Vec<f64> = torque.iter().copied().filter(|lack| *lack != 0.0).collect();
         let noise = motion.signals.torque_noise[self.joint.0];
         if rms(&lacks) < OF_NOISE * noise {

@@ -261,6 +261,19 @@ impl EffectLaw {
         }
     }
 
+    /// Both, which costs no more than one of them where the effect is on no channel.
+    pub fn torque_and_gradient(
+        &self,
+        samples: &JointSamples<'_>,
+        values: &[f64],
+    ) -> (Vec<f64>, Vec<Vec<f64>>) {
+        if self.channel().is_some() {
+            return (self.torque(samples, values), self.gradient(samples, values));
+        }
+        let mut columns = self.value(samples, values);
+        (columns.remove(0), columns)
+    }
+
     /// The states that the samples lead to: one column for each.
     pub fn states(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<Vec<f64>> {
         let columns: Vec<&[f64]> = self.columns.iter().map(|&at| samples.column(at)).collect();

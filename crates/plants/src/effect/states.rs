@@ -107,6 +107,7 @@ impl StateLaw {
         let mut path = vec![Vec::with_capacity(t.len()); s];
         let mut sensitivities = vec![Vec::with_capacity(t.len()); s * p];
         let mut state = vec![0.0; s * (1 + p)];
+        let mut steps = state.clone();
         let mut inputs = vec![0.0; columns.len() + s];
         let mut entries = vec![0.0; s + s * (s + p) + s * s * (s + p)];
         let mut rates = self.rates.evaluator(values);
@@ -126,19 +127,18 @@ impl StateLaw {
                 rates.evaluate(&[&inputs], &mut entries).expect("the shapes are those of the law");
                 let rates = Rates { states: s, parameters: p, entries: &entries };
                 let h = t[k] - t[k - 1];
-                let steps = match self.kind {
-                    Kind::Separate => separate_step(&rates, h, &state),
+                match self.kind {
+                    Kind::Separate => separate_step(&rates, h, &state, &mut steps),
                     Kind::Steady => {
                         let propagator = match kept.take().filter(|kept| kept.is_of(h)) {
                             Some(kept) => kept,
                             None => Propagator::new(&rates, h),
                         };
-                        let steps = propagator.step(&rates, &state);
+                        propagator.step(&rates, &state, &mut steps);
                         kept = Some(propagator);
-                        steps
                     }
-                    Kind::Changing => changing_step(&rates, h, &state),
-                };
+                    Kind::Changing => changing_step(&rates, h, &state, &mut steps),
+                }
                 state.iter_mut().zip(&steps).for_each(|(x, step)| *x += step);
             }
             path.iter_mut().zip(&state).for_each(|(path, x)| path.push(*x));
@@ -166,9 +166,8 @@ impl Rates<'_> {
 }
 
 /// One step of the states and, behind them, their sensitivities, where states are separate.
-fn separate_step(rates: &Rates<'_>, h: f64, state: &[f64]) -> Vec<f64> {
+fn separate_step(rates: &Rates<'_>, h: f64, state: &[f64], steps: &mut [f64]) {
     let (s, p) = (rates.states, rates.parameters);
-    let mut steps = vec![0.0; s * (1 + p)];
     for i in 0..s {
         let (phi, slope) = phi_1(h * rates.by_state(i, i));
         steps[i] = h * phi * rates.rate(i);
@@ -177,13 +176,11 @@ fn separate_step(rates: &Rates<'_>, h: f64, state: &[f64]) -> Vec<f64> {
             steps[s + i * p + parameter] = h * (phi * rates.along(state, parameter, i) + turned);
         }
     }
-    steps
 }
 
 /// The same whatever the rates depend on.
-fn changing_step(rates: &Rates<'_>, h: f64, state: &[f64]) -> Vec<f64> {
+fn changing_step(rates: &Rates<'_>, h: f64, state: &[f64], steps: &mut [f64]) {
     let (s, p) = (rates.states, rates.parameters);
-    let mut steps = vec![0.0; s * (1 + p)];
     // the exponential of [[h J, h f], [0, 0]] has h phi_1(h J) f in its last column
     let generator = DMatrix::from_fn(s + 1, s + 1, |i, j| match (i < s, j < s) {
         (true, true) => h * rates.by_state(i, j),
@@ -201,7 +198,6 @@ fn changing_step(rates: &Rates<'_>, h: f64, state: &[f64]) -> Vec<f64> {
         let moved = derivative_of_exponential(&generator, &change);
         (0..s).for_each(|i| steps[s + i * p + parameter] = moved[(i, s)]);
     }
-    steps
 }
 
 /// What a step does to rates whose df/dx depends on parameters alone.
@@ -243,9 +239,8 @@ impl Propagator {
         (self.h - h).abs() <= ROUNDING * self.h
     }
 
-    fn step(&self, rates: &Rates<'_>, state: &[f64]) -> Vec<f64> {
+    fn step(&self, rates: &Rates<'_>, state: &[f64], steps: &mut [f64]) {
         let (s, p) = (rates.states, rates.parameters);
-        let mut steps = vec![0.0; s * (1 + p)];
         for i in 0..s {
             let row = |matrix: &[f64], column: &dyn Fn(usize) -> f64| -> f64 {
                 (0..s).map(|j| matrix[i * s + j] * column(j)).sum()
@@ -256,7 +251,6 @@ impl Propagator {
                 steps[s + i * p + parameter] = moved + row(by, &|j| rates.rate(j));
             }
         }
-        steps
     }
 }
 
@@ -270,18 +264,22 @@ fn derivative_of_exponential(a: &DMatrix<f64>, e: &DMatrix<f64>) -> DMatrix<f64>
     block.exp().view((0, n), (n, n)).into_owned()
 }
 
+/// 1/(n+1)! and (n+1)/(n+2)!, for each n: what is left out is less than rounding up to 0.5.
+const SERIES: [[f64; 2]; 14] = {
+    let (mut series, mut factorial, mut n) = ([[0.0; 2]; 14], 1.0, 0);
+    while n < series.len() {
+        factorial *= n as f64 + 1.0;
+        series[n] = [1.0 / factorial, (n as f64 + 1.0) / (factorial * (n as f64 + 2.0))];
+        n += 1;
+    }
+    series
+};
+
 /// phi_1(z) = (exp z - 1)/z and its derivative.
 fn phi_1(z: f64) -> (f64, f64) {
     if z.abs() < 0.5 {
-        // sums of z^n/(n+1)! and (n+1) z^n/(n+2)!
-        let (mut term, mut value, mut slope) = (1.0, 0.0, 0.0);
-        for n in 0..18 {
-            let n = f64::from(n);
-            value += term / (n + 1.0);
-            slope += term / (n + 2.0);
-            term *= z / (n + 1.0);
-        }
-        return (value, slope);
+        let horner = |(value, slope): (f64, f64), [a, b]: &[f64; 2]| (value * z + a, slope * z + b);
+        return SERIES.iter().rev().fold((0.0, 0.0), horner);
     }
     let value = z.exp_m1() / z;
     (value, (z.exp() - value) / z)

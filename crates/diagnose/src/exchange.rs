@@ -53,10 +53,7 @@ impl Search<'_> {
                     one.posterior <= now.posterior || !self.is_missing_beside(&own, one)
                 });
                 // the new one stands last there
-                for one in &mut all {
-                    let last = one.parts.len() - 1;
-                    one.parts[place..=last].rotate_right(1);
-                }
+                all = all.into_iter().map(|one| one.with_last_at(place)).collect();
                 let better = self.better(&now, &rest, place, &all).filter(|_| may_exchange);
                 better.map(|one| self.settled(one.parts.clone(), Some(one)))
             };

@@ -59,7 +59,7 @@ impl Candidate {
 const PER_POSITION: [&str; 2] = ["1/rad", "1/m"];
 
 /// Most points from which one law's parameters are searched.
-const MOST_STARTS: usize = 48;
+const MOST_STARTS: usize = 96;
 
 /// Where the search of a law's parameters begins: their values, and how far each may be from that;
 /// none of amplitudes, whose size is that of torques.

@@ -190,6 +190,10 @@ impl Law for JointLaw {
         }
     }
 
+    fn transmission_of(&self) -> Option<JointIndex> {
+        self.law.is_transmission().then_some(self.joint)
+    }
+
     fn unpredicted(&self, motion: Motion<'_>, values: &[f64]) -> Unpredicted {
         if self.acts != Acts::Demand {
             return Unpredicted::default();

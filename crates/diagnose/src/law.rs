@@ -132,6 +132,11 @@ pub trait Law {
         false
     }
 
+    /// The joint whose transmission it is, of a law of one.
+    fn transmission_of(&self) -> Option<JointIndex> {
+        None
+    }
+
     /// The samples of which the law says nothing: it takes what was measured as it is.
     fn unpredicted(&self, _motion: Motion<'_>, _values: &[f64]) -> Unpredicted {
         Unpredicted::default()

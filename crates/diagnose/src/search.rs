@@ -161,8 +161,15 @@ impl<'a> Search<'a> {
         parts: &[Part],
         is_asked: &dyn Fn(usize) -> bool,
     ) -> Vec<(f64, &Part)> {
-        let is_there =
-            |candidate: usize| parts.iter().any(|part| part.placed.candidate == candidate);
+        // A drive has one transmission: what two of them do does not add up.
+        let transmission = |candidate: usize| {
+            self.weighing.candidates[candidate].law.transmission_of().map(|joint| joint.0)
+        };
+        let is_there = |candidate: usize| {
+            let own = transmission(candidate);
+            let mut others = parts.iter().map(|part| part.placed.candidate);
+            others.any(|other| other == candidate || own.is_some() && transmission(other) == own)
+        };
         let mut seen: Vec<(f64, &Part)> = Vec::new();
         for (candidate, own) in self.screen.iter().enumerate() {
             if is_there(candidate) || !is_asked(candidate) {

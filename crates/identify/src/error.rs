@@ -27,10 +27,6 @@ pub enum ErrorKind {
     Unsuitable,
     /// An iteration does not settle.
     NotSettled,
-    /// A simulation does not begin.
-    NotStarted,
-    /// A simulation broke off.
-    BrokeOff,
     /// Values make no model.
     NoModel,
     /// A text is no piece of a log of the model.
@@ -53,7 +49,6 @@ struct Reason {
 #[derive(Clone, Debug, PartialEq)]
 enum Source {
     Condition(denavit_measure::Error),
-    Start(denavit_simulate::Error),
     Model(ModelError),
 }
 
@@ -139,7 +134,6 @@ impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         Some(match self.0.source.as_ref()? {
             Source::Condition(error) => error,
-            Source::Start(error) => error,
             Source::Model(error) => error,
         })
     }
@@ -159,13 +153,6 @@ impl From<Vec<Error>> for Error {
 impl From<denavit_measure::Error> for Error {
     fn from(error: denavit_measure::Error) -> Self {
         Self::with_source(ErrorKind::Condition, error.to_string(), Source::Condition(error))
-    }
-}
-
-/// A simulation that does not begin.
-impl From<denavit_simulate::Error> for Error {
-    fn from(error: denavit_simulate::Error) -> Self {
-        Self::with_source(ErrorKind::NotStarted, error.to_string(), Source::Start(error))
     }
 }
 

@@ -19,7 +19,7 @@ pub use pieces::Piece;
 pub use stretch::{Stretch, Stretches};
 
 use super::log::{JointSignals, MeasuredLog};
-use crate::error::{Cause, Error};
+use crate::error::{Error, ErrorKind};
 use crate::{JointIndex, SampleIndex};
 use std::ops::Range;
 
@@ -146,7 +146,10 @@ impl Conditioned {
                 }
             }
             if logged {
-                let no_rates = || Cause::NoRates(name.clone());
+                let no_rates = || {
+                    let text = format!("`qd_{name}` and `qdd_{name}` are not both in the log");
+                    Error::new(ErrorKind::Derivatives, text)
+                };
                 for (column, all) in [qd, qdd].into_iter().zip(&mut rates) {
                     let mut column = column.ok_or_else(no_rates)?;
                     if let Some(filter) = &filter {
@@ -162,7 +165,9 @@ impl Conditioned {
         found.filter = filter;
         found.rest();
         if !found.resting.contains(&false) {
-            return Err(Cause::NothingMoves.into());
+            let text = "no joint moves further than its noise\n  hint: noise is that of the steps \
+                        of its encoder: `options.resolution` in rad or m, if it was given";
+            return Err(Error::new(ErrorKind::NothingMoves, text));
         }
         found.compare_rates(names)?;
         found.average(how.averaging)?;
@@ -333,11 +338,11 @@ impl Conditioned {
     }
 }
 
-fn lawful(filter: Filter, step_s: f64) -> Result<Butterworth, Cause> {
+fn lawful(filter: Filter, step_s: f64) -> Result<Butterworth, Error> {
     let Filter { order, cutoff_hz } = filter;
     let limit_hz = 0.5 / step_s;
     let found = Butterworth::new(order, cutoff_hz, step_s);
-    found.ok_or(Cause::Cutoff { cutoff_hz, limit_hz })
+    found.ok_or_else(|| Error::cutoff(cutoff_hz, limit_hz))
 }
 
 /// The first difference of sixth order, per sample.

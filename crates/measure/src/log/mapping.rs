@@ -1,7 +1,7 @@
 //! Which column of a foreign log is which of ours.
 
 use super::mapping_fault::MappingCause;
-use crate::error::{Cause, Error};
+use crate::error::{Error, ErrorKind};
 use denavit_codegen::model::json::Value;
 use denavit_codegen::model::{Node, Report, read_document};
 use std::collections::BTreeMap;
@@ -62,7 +62,7 @@ impl ColumnMapping {
             let sources = entries.map(|(name, node)| (name.to_owned(), entry(name, node, report)));
             Some(Self { sources: sources.collect() })
         });
-        read.map_err(|faults| Cause::Mapping(faults).into())
+        read.map_err(|faults| Error::new(ErrorKind::Mapping, faults.to_string()))
     }
 
     /// Adds or replaces the source of a column.

@@ -19,7 +19,6 @@ use crate::error::Error;
 use crate::policy::log::{LARGEST, LARGEST_TIME};
 pub use fault::{LogFault, LogFaults, LogRemark, Suspicion};
 pub use mapping::{ColumnMapping, ColumnSource};
-pub(crate) use mapping_fault::MappingCause;
 
 pub use denavit_logs::{FileFault, FileRemark, Place};
 

@@ -3,7 +3,7 @@
 
 use super::least_squares::Estimate;
 use super::left_over::Left;
-use super::likelihood::noise_of_positions;
+use super::noise_bias::noise_of_positions;
 use super::rows::BlockMaker;
 use super::validate::{Validation, validate};
 use crate::policy::unexplained::{

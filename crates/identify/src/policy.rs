@@ -1,13 +1,6 @@
 //! The numbers that decide estimates and what is said of them, each with its unit and where it is
 //! from: those of each module. Doubts have a table of their own.
 
-/// `estimate/bounds.rs`: Masses and moments of inertia that a model's file writes as expressions:
-/// none may be negative.
-pub(crate) mod bounds {
-    /// The least share of its size that an entry keeps.
-    pub(crate) const LEAST: f64 = 1e-3;
-}
-
 /// `estimate/comparison.rs`: Logs for an estimate that are compared with each other.
 pub(crate) mod comparison {
     /// An estimate is that of some logs if no parameter is further from what they say, in their
@@ -24,9 +17,6 @@ pub(crate) mod consistent {
 
     /// Weights of what entries of bodies fall short of, one after the other until nothing does.
     pub(crate) const BOUND_WEIGHTS: [f64; 4] = [1e2, 1e4, 1e6, 1e8];
-
-    /// The least share of its value in the file that a positive number of it keeps.
-    pub(crate) const LEAST_OF: f64 = 1e-6;
 
     /// From so many standard errors on the search goes along the way from the nominal parameters to
     /// the estimate, in so many stages: where columns are products, what fits lies in valleys that

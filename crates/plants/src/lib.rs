@@ -10,7 +10,7 @@
 //! - [`RobotFunction`]: any function of a robot, on one sample or on many, from many threads
 //! - [`WalkingFunctions`]: momentum about the centre of mass, zero-moment point and the like
 //! - [`effect`]: laws of missing physics, with derivatives by their parameters
-//! - [`body`]: coordinates of bodies that exist
+//! - [`body`], [`coordinates`]: coordinates of bodies, and of all parameters of models, that exist
 //! - [`regression`]: torques as linear functions of the base parameters, for many samples at once
 //!
 //! - [`model_text`]: new values and effects in the text of a model file, which else stays as it is
@@ -25,6 +25,7 @@
 
 pub mod batch;
 pub mod body;
+pub mod coordinates;
 mod cradle;
 mod derivatives;
 pub mod effect;

@@ -10,7 +10,6 @@
 //! - [`long`]: logs that are too long to be held at once
 //! - [`consistent()`]: the nearest bodies that exist
 
-mod bounds;
 mod comparison;
 mod condensed;
 mod consistent;

@@ -101,14 +101,6 @@ pub(crate) mod reversals {
     pub(crate) const STILL: f64 = 1e-4;
 }
 
-/// `contact_forces.rs`: Robots that are pushed from outside: what contact forces, and wrenches on
-/// links, do to each equation (thesis 3.3, 5.2.1).
-pub(crate) mod contact_forces {
-    /// Half the distance of differences [rad, m]: of order 4, so that rounding and the rest of
-    /// the Taylor series are both about 1e-13.
-    pub(crate) const DIFFERENCE: f64 = 1e-3;
-}
-
 /// `log/check.rs`: Whether a log says what it seems to say: units, swapped joints, signals that do
 /// not move.
 pub(crate) mod check {

@@ -8,12 +8,11 @@ use crate::observer::Reading;
 use denavit_identify::estimate::Method;
 use denavit_identify::leave_out_idle_motors;
 use denavit_measure::ErrorKind;
-use denavit_measure::Ground;
 use denavit_measure::condition::{Conditioned, Conditioning, Filter, Stretch};
 use denavit_measure::log::{LogFault, LogFaults, LogRemark, MeasuredLog};
 use denavit_measure::{JointIndex, Split};
 use denavit_plants::regression::CoulombLaw;
-use denavit_replay::{LONGEST_S, MotionLog, take_out, undo_logged_torques, undo_readings};
+use denavit_replay::{Ground, LONGEST_S, MotionLog, take_out, undo_logged_torques, undo_readings};
 
 /// All logs of a run.
 pub(super) struct Read {

@@ -5,7 +5,6 @@
 //! - [`doubt`]: what logs may be other than they are taken for
 //! - [`two_stage`]: springs and motors of series elastic drives first, then the load
 //! - [`identify`]: all of it at once
-//! - [`updated_model`]: back into the model file
 //! - [`statics`]: what weighings and held postures say
 //! - [`Error`]: why there is no answer, of all of these
 
@@ -20,9 +19,7 @@ mod odd_log;
 mod policy;
 pub mod statics;
 pub mod two_stage;
-mod updated_model;
 
 pub use error::{Error, ErrorKind};
 pub use identification::{Estimated, Identification, LeftOutRows, Request, estimated, identify};
 pub use idle::leave_out_idle_motors;
-pub use updated_model::{UpdatedModel, updated_model};

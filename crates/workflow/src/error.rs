@@ -122,7 +122,7 @@ pub(crate) enum Cause {
     /// Columns seem to be other ones than they are taken for.
     Misread(Vec<MisreadColumns>),
     /// What was found makes no model.
-    Update(denavit_identify::Error),
+    Update(denavit_plants::Error),
     /// Two stages need one log.
     OneLog,
     /// Measurements at rest do not fit the model; holds their file.

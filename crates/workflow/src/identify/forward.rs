@@ -7,10 +7,9 @@ use crate::files::Files;
 use crate::mistaken::FileKind;
 use crate::observer::{Stage, Watched};
 use denavit_codegen::model::Robot;
-use denavit_identify::UpdatedModel;
 use denavit_measure::condition::Conditioned;
 use denavit_numerics::short;
-use denavit_plants::{plant_of, shipped};
+use denavit_plants::{UpdatedModel, plant_of, shipped};
 use denavit_replay::{
     ErrorKind, Forward, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
 };
@@ -77,7 +76,7 @@ impl Controlled {
 #[derive(Clone, Debug)]
 pub enum NotMoved {
     /// What was found makes no model.
-    Update(denavit_identify::Error),
+    Update(denavit_plants::Error),
     /// A model has no plant.
     Plant(denavit_plants::Error),
     /// A log cannot be simulated; holds its file.
@@ -119,7 +118,7 @@ impl Again<'_> {
     pub(super) fn gap(
         self,
         robot: &Robot,
-        updated: &Result<UpdatedModel, denavit_identify::Error>,
+        updated: &Result<UpdatedModel, denavit_plants::Error>,
         watched: &mut Watched<'_>,
     ) -> SimulationGap {
         let before =

@@ -119,7 +119,7 @@ pub(crate) mod left_out {
     /// of 95 % that is off by so much holds in 92 %.
     pub(crate) const BIAS: f64 = 0.5;
 
-    /// The least share of its rows that a joint keeps.
+    /// The least share of its rows that a joint keeps, or none near reversals are left out.
     pub(crate) const LEAST: f64 = 0.1;
 }
 
@@ -200,9 +200,6 @@ pub(crate) mod unexplained {
 
     /// See [`AT_REST`].
     pub(crate) const LEFT_AT_REST: f64 = 0.03;
-
-    /// What is left is that of noise of the positions if that makes one part in so many of it.
-    pub(crate) const OF_NOISE: f64 = 2.0;
 }
 
 /// `estimate/weights.rs`: Weights of rows by the noise of each joint in each log, which is that of

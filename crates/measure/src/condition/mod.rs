@@ -90,8 +90,6 @@ pub struct Conditioned {
     pub decimation: usize,
     /// The filter that positions and torques went through.
     pub filter: Option<Butterworth>,
-    /// Standard deviation of the torque of each joint about the mean lap, where there are laps.
-    pub lap_noise: Option<Vec<Option<f64>>>,
     /// The laps that were found in the log.
     pub laps: Option<Laps>,
     /// Deviation of each measured position before the filter, from steps of its encoder or from
@@ -174,7 +172,7 @@ impl Conditioned {
         Ok(found)
     }
 
-    /// Replaces laps by their mean: everything once, with the noise that the laps show.
+    /// Replaces laps by their mean: everything once.
     fn average(&mut self, averaging: Averaging) -> Result<(), Error> {
         // values between samples need some on either side
         let samples = self.q.first().map_or(0, Vec::len);
@@ -191,24 +189,16 @@ impl Conditioned {
             let n = mean.len();
             (0..n + 2 * wrap).map(|k| mean[(k + n * wrap.div_ceil(n) - wrap) % n]).collect()
         };
-        for q in &mut self.q {
-            *q = around(&laps.mean(q).0);
-        }
-        for column in self.rates.iter_mut().flatten().flatten() {
-            *column = around(&laps.mean(column).0);
-        }
-        let mut noise = Vec::new();
-        for torque in &mut self.torque {
-            let mean = torque.as_ref().map(|torque| laps.mean(torque));
-            noise.push(mean.as_ref().map(|(_, noise)| *noise));
-            *torque = mean.map(|(mean, _)| around(&mean));
+        let rates = self.rates.iter_mut().flatten().flatten();
+        let torques = self.torque.iter_mut().flatten();
+        for column in self.q.iter_mut().chain(rates).chain(torques) {
+            *column = around(&laps.mean(column));
         }
         self.start_s += laps.start as f64 * self.step_s;
         // the filter's cutoff, in samples, is as good as the same
         self.step_s *= laps.distance();
         self.start_s -= wrap as f64 * self.step_s;
         self.range = edge..laps.samples + 2 * wrap - edge;
-        self.lap_noise = Some(noise);
         self.laps = Some(laps);
         Ok(())
     }

@@ -68,6 +68,7 @@ pub use denavit_numerics as numerics;
 pub use denavit_plants as plants;
 pub use denavit_plants::emitted::{planar_biped, puma560, tulip};
 pub use denavit_plants::{batch, shipped, trajectory};
+pub use denavit_replay as replay;
 pub use denavit_report as report;
 pub use denavit_simulate as simulate;
 pub use denavit_walk as walk;

@@ -68,7 +68,7 @@ pub(crate) enum Misuse {
     /// A picture of a simulation that was not made.
     NotSimulated,
     /// What was found makes no model.
-    NoModel(denavit::identify::Error),
+    NoModel(denavit::plants::Error),
     /// A formula is not shown in a page.
     Formula(FormulaError),
 }

@@ -43,7 +43,7 @@ pub(super) enum Cause {
     /// A log that it is moved along cannot be filtered.
     Motion(String, denavit_measure::Error),
     /// A log cannot be simulated again.
-    Forward(String, denavit_identify::Error),
+    Forward(String, denavit_replay::Error),
     /// No motion tells names apart, for a reason in words.
     NoExperiment(String),
     /// The robot has no limits to stay within, or none that let it move.

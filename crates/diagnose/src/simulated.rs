@@ -9,14 +9,15 @@ use super::state::{Setting, State, Taken};
 use denavit_codegen::effect::{Effect, read_estimated_model, read_model};
 use denavit_codegen::model::{LinkId, Robot};
 use denavit_codegen::number::parse_decimal;
-use denavit_identify::forward::{Forward, LONGEST_S, MotionLog, Windows, in_windows};
-use denavit_identify::{undo_logged_torques, undo_readings};
 use denavit_measure::condition::Filter;
 use denavit_measure::log::MeasuredLog;
 use denavit_measure::{JointIndex, Split};
 use denavit_plants::effect::apart;
 use denavit_plants::model_text::{EffectValues, NewEffect, NewValue, with_effects, with_values};
 use denavit_plants::{PlantModel, plant_of};
+use denavit_replay::{
+    Forward, LONGEST_S, MotionLog, Windows, in_windows, undo_logged_torques, undo_readings,
+};
 
 /// How far simulated motions run away from measured ones.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,6 +1,5 @@
 //! Why nothing is identified.
 
-use denavit_codegen::model::ModelError;
 use std::fmt;
 
 /// Why there is no answer. It is printed with what helps, where something does.
@@ -27,12 +26,6 @@ pub enum ErrorKind {
     Unsuitable,
     /// An iteration does not settle.
     NotSettled,
-    /// A simulation does not begin.
-    NotStarted,
-    /// A simulation broke off.
-    BrokeOff,
-    /// Values make no model.
-    NoModel,
     /// A text is no piece of a log of the model.
     Piece,
 }
@@ -45,16 +38,8 @@ struct Reason {
     column: Option<String>,
     scale: Option<f64>,
     measurement: Option<usize>,
-    source: Option<Source>,
+    source: Option<denavit_measure::Error>,
     faults: Vec<Error>,
-}
-
-/// Errors of others that are reasons.
-#[derive(Clone, Debug, PartialEq)]
-enum Source {
-    Condition(denavit_measure::Error),
-    Start(denavit_simulate::Error),
-    Model(ModelError),
 }
 
 impl Error {
@@ -62,12 +47,6 @@ impl Error {
     pub fn missing_column(name: String) -> Self {
         let text = format!("the log has no column `{name}`");
         Self::new(ErrorKind::MissingColumn, text).of_column(name)
-    }
-
-    /// The file of a model, of this name, has no place for values.
-    pub fn no_place(model: &str) -> Self {
-        let text = format!("{model}: the identified values have no place in its file");
-        Self::new(ErrorKind::NoModel, text)
     }
 
     pub(crate) fn new(kind: ErrorKind, text: impl Into<String>) -> Self {
@@ -95,12 +74,6 @@ impl Error {
     pub(crate) fn mended_by(mut self, scale: Option<f64>) -> Self {
         self.0.scale = scale;
         self
-    }
-
-    fn with_source(kind: ErrorKind, text: String, source: Source) -> Self {
-        let mut one = Self::new(kind, text);
-        one.0.source = Some(source);
-        one
     }
 
     /// What kind of reason it is.
@@ -137,11 +110,7 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        Some(match self.0.source.as_ref()? {
-            Source::Condition(error) => error,
-            Source::Start(error) => error,
-            Source::Model(error) => error,
-        })
+        self.0.source.as_ref().map(|error| error as _)
     }
 }
 
@@ -158,20 +127,8 @@ impl From<Vec<Error>> for Error {
 /// A log that cannot be conditioned.
 impl From<denavit_measure::Error> for Error {
     fn from(error: denavit_measure::Error) -> Self {
-        Self::with_source(ErrorKind::Condition, error.to_string(), Source::Condition(error))
-    }
-}
-
-/// A simulation that does not begin.
-impl From<denavit_simulate::Error> for Error {
-    fn from(error: denavit_simulate::Error) -> Self {
-        Self::with_source(ErrorKind::NotStarted, error.to_string(), Source::Start(error))
-    }
-}
-
-/// A file with new values is not that of a model.
-impl From<ModelError> for Error {
-    fn from(error: ModelError) -> Self {
-        Self::with_source(ErrorKind::NoModel, error.to_string(), Source::Model(error))
+        let mut one = Self::new(ErrorKind::Condition, error.to_string());
+        one.0.source = Some(error);
+        one
     }
 }

@@ -6,7 +6,7 @@ use super::estimate::{
     Consistent, ContradictingLog, Convergence, Estimate, HeldOut, IdentifiedParameter, Judgement,
     Options, ShownLogs, SlowRows, Standing, Status, Unexplained, Validation, biased_frictions,
     consistent, contradicting_logs, convergence, estimate, filter_errors, lacking, long_enough,
-    noise_in_torques, parameters, unexplained_joints, validate,
+    noise_of_positions, parameters, unexplained_joints, validate,
 };
 use super::noisy_logs::{MOST, biasing_logs, noisy_logs, shown_logs};
 use super::odd_log::odd_log;
@@ -157,7 +157,7 @@ pub fn estimated(request: Request<'_>) -> Result<Estimated, Error> {
 impl Estimated {
     /// Whether a log for validation needs a lower filter.
     pub fn is_noisy(&self, model: &RegressionModel, log: &Conditioned) -> bool {
-        let noise = noise_in_torques(model, log, self.found.solution.phi.as_slice());
+        let noise = noise_of_positions(model, &[log], self.found.solution.phi.as_slice());
         noise.into_iter().any(|share| share > NOISY)
     }
 

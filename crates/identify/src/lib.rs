@@ -1,33 +1,25 @@
 //! Identification: from motion to parameters, with honest errors (thesis chapter 3).
 //!
-//! - [`take_out`]: effects that the model has beside its equations, taken out of logs
 //! - [`leave_out_idle_motors`]: torques of joints that a brake holds
 //! - [`estimate`]: base parameters with their errors, and what they leave unexplained
 //! - [`doubt`]: what logs may be other than they are taken for
 //! - [`two_stage`]: springs and motors of series elastic drives first, then the load
-//! - [`forward`]: the identified model in motion against a log
 //! - [`identify`]: all of it at once
-//! - [`updated_model`]: back into the model file
 //! - [`statics`]: what weighings and held postures say
 //! - [`Error`]: why there is no answer, of all of these
 
 pub mod doubt;
 mod error;
 pub mod estimate;
-pub mod forward;
 mod identification;
 mod idle;
-mod known_effects;
 mod long;
 mod noisy_logs;
 mod odd_log;
 mod policy;
 pub mod statics;
 pub mod two_stage;
-mod updated_model;
 
 pub use error::{Error, ErrorKind};
 pub use identification::{Estimated, Identification, LeftOutRows, Request, estimated, identify};
 pub use idle::leave_out_idle_motors;
-pub use known_effects::{take_out, undo_logged_torques, undo_readings};
-pub use updated_model::{UpdatedModel, updated_model};

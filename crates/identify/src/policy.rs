@@ -1,22 +1,14 @@
 //! The numbers that decide estimates and what is said of them, each with its unit and where it is
 //! from: those of each module. Doubts have a table of their own.
 
-/// `estimate/bounds.rs`: Masses and moments of inertia that a model's file writes as expressions:
-/// none may be negative.
-pub(crate) mod bounds {
-    /// The least share of its size that an entry keeps.
-    pub(crate) const LEAST: f64 = 1e-3;
-}
-
-/// `estimate/comparison.rs`: Logs for an estimate that are compared with each other.
+/// Of `estimate/comparison.rs`.
 pub(crate) mod comparison {
     /// An estimate is that of some logs if no parameter is further from what they say, in their
     /// standard errors.
     pub(crate) const APART: f64 = 3.0;
 }
 
-/// `estimate/consistent.rs`: Physical consistency: the parameters nearest to an estimate with
-/// positive definite pseudo-inertias, and friction and rotor inertia that are not negative.
+/// Of `estimate/consistent.rs`.
 pub(crate) mod consistent {
     /// What a unit of change of a body's coordinates costs, in squared standard errors of the
     /// estimate: little, so that it decides only what the data leave open.
@@ -25,17 +17,13 @@ pub(crate) mod consistent {
     /// Weights of what entries of bodies fall short of, one after the other until nothing does.
     pub(crate) const BOUND_WEIGHTS: [f64; 4] = [1e2, 1e4, 1e6, 1e8];
 
-    /// The least share of its value in the file that a positive number of it keeps.
-    pub(crate) const LEAST_OF: f64 = 1e-6;
-
     /// From so many standard errors on the search goes along the way from the nominal parameters to
     /// the estimate, in so many stages: where columns are products, what fits lies in valleys that
     /// are narrow and bent, and each stage begins at the bottom of one.
     pub(crate) const FAR: f64 = 2.0;
 }
 
-/// `estimate/contradiction.rs`: Logs that contradict the others: parameters of their own would
-/// explain what those of all do not.
+/// Of `estimate/contradiction.rs`.
 pub(crate) mod contradiction {
     /// What own parameters explain must be this share of a joint's torque, as root of mean square,
     /// and so many times what they leave, which noise may have made them follow; where parts of
@@ -60,8 +48,7 @@ pub(crate) mod contradiction {
     pub(crate) const ALIKE: f64 = 0.25;
 }
 
-/// `estimate/errors.rs`: Standard errors that hold where residuals are alike from one sample to
-/// the next.
+/// Of `estimate/errors.rs`.
 pub(crate) mod errors {
     /// Sums of scores with neighbours counted half say as much as so many times fewer that are
     /// independent: 1 + 2 (1/2)^2.
@@ -71,7 +58,7 @@ pub(crate) mod errors {
     pub(crate) const MOST_LEVERAGE: f64 = 0.95;
 }
 
-/// `estimate/held_out.rs`: Logs for validation held against those for the estimate.
+/// Of `estimate/held_out.rs`.
 pub(crate) mod held_out {
     /// What is left must be this share of a joint's torque, as root of mean square,
     pub(crate) const OF_TORQUE: f64 = 0.05;
@@ -89,16 +76,14 @@ pub(crate) mod held_out {
     pub(crate) const OF_BAND: f64 = 25.0;
 }
 
-/// `estimate/half_cutoff.rs`: What changes with half the cutoff of the filter: more than chance
-/// where noise of the positions biases parameters in a way that it does not by itself.
+/// Of `estimate/half_cutoff.rs`.
 pub(crate) mod half_cutoff {
     /// What a bias is, at most, of its change with half the cutoff: it grows with the 1.5th power
     /// of the cutoff or faster, 1 / (1 - 2^-1.5).
     pub(crate) const OF_CHANGE: f64 = 1.5;
 }
 
-/// `estimate/instruments.rs`: Instrumental variables: estimates that noise of the motion does not
-/// bias.
+/// Of `estimate/instruments.rs`.
 pub(crate) mod instruments {
     /// The share of a joint's variance by which the positions of instruments differ, of those of
     /// another motion; and the least variance that says something, of the largest one.
@@ -108,7 +93,7 @@ pub(crate) mod instruments {
     pub(crate) const MOVES: f64 = 1e-4;
 }
 
-/// `estimate/least_squares.rs`: The estimates: one loop of weighting and solving, by method.
+/// Of `estimate/least_squares.rs`.
 pub(crate) mod least_squares {
     /// The change of phi, in standard errors, that robust weights which creep may make at last.
     pub(crate) const MOVES_LITTLE: f64 = 0.1;
@@ -118,9 +103,7 @@ pub(crate) mod least_squares {
     pub(crate) const FEWEST_DEGREES: f64 = 3.0;
 }
 
-/// `estimate/left_out.rs`: Rows that are left out: where a joint reverses or hardly moves, its
-/// friction is not what the sign of its velocity says, and the filter smears that over its own
-/// time.
+/// Of `estimate/left_out.rs`.
 pub(crate) mod left_out {
     /// Deviations of a velocity's noise that are slow.
     pub(crate) const NOISE: f64 = 3.0;
@@ -129,11 +112,11 @@ pub(crate) mod left_out {
     /// of 95 % that is off by so much holds in 92 %.
     pub(crate) const BIAS: f64 = 0.5;
 
-    /// The least share of its rows that a joint keeps.
+    /// The least share of its rows that a joint keeps, or none near reversals are left out.
     pub(crate) const LEAST: f64 = 0.1;
 }
 
-/// `estimate/left_over.rs`: What is left of torques: how much, and whether it is noise.
+/// Of `estimate/left_over.rs`.
 pub(crate) mod left_over {
     /// Noise is another one after half a period of the filter's cutoff: the residual is still
     /// correlated with itself by so much if it is none.
@@ -143,15 +126,13 @@ pub(crate) mod left_over {
     pub(crate) const SAID: f64 = 0.005;
 }
 
-/// `estimate/likelihood.rs`: Noise on both sides: what noise of the positions does to the residual
-/// of each row.
+/// Of `estimate/likelihood.rs`.
 pub(crate) mod likelihood {
     /// The least share of the residual's variance that is taken for noise of the torque itself.
     pub(crate) const LEAST_TORQUE_SHARE: f64 = 0.05;
 }
 
-/// `estimate/report.rs`: What was found, in the parameters that are reported: values, errors, and
-/// which mean something.
+/// Of `estimate/report.rs`.
 pub(crate) mod report {
     /// How much of a parameter may lie in directions that are not excited.
     pub(crate) const DEAD_SHARE: f64 = 1e-6;
@@ -167,8 +148,7 @@ pub(crate) mod report {
     pub(crate) const SURE: f64 = 3.5;
 }
 
-/// `estimate/robust.rs`: Weights that outliers lose (iteratively reweighted least squares; Huber
-/// 1964, Beaton and Tukey 1974).
+/// Of `estimate/robust.rs`.
 pub(crate) mod robust {
     /// The least mean of psi' over that of the weights: most residuals count at all.
     pub(crate) const LEAST_SLOPE: f64 = 0.1;
@@ -181,14 +161,13 @@ pub(crate) mod robust {
     pub(crate) const BISQUARE: f64 = 4.685;
 }
 
-/// `estimate/long/text.rs`: Rows of a piece of a long log as JSON.
+/// Of `estimate/long/text.rs`.
 pub(crate) mod long {
     /// What entries of a triangle are below: their squares are numbers.
     pub(crate) const LARGEST: f64 = 1e150;
 }
 
-/// `estimate/unexplained.rs`: Joints whose torque an estimate does not explain, in all logs, in
-/// one of them, or while a joint rests.
+/// Of `estimate/unexplained.rs`.
 pub(crate) mod unexplained {
     /// The share of a joint's torque, as root of mean square, that must be left.
     pub(crate) const LEFT: f64 = 0.9;
@@ -210,13 +189,9 @@ pub(crate) mod unexplained {
 
     /// See [`AT_REST`].
     pub(crate) const LEFT_AT_REST: f64 = 0.03;
-
-    /// What is left is that of noise of the positions if that makes one part in so many of it.
-    pub(crate) const OF_NOISE: f64 = 2.0;
 }
 
-/// `estimate/weights.rs`: Weights of rows by the noise of each joint in each log, which is that of
-/// its residuals.
+/// Of `estimate/weights.rs`.
 pub(crate) mod weights {
     /// Change of phi, in standard errors, below which weights have settled.
     pub(crate) const SETTLED: f64 = 1e-3;
@@ -225,8 +200,7 @@ pub(crate) mod weights {
     pub(crate) const LEAST_FREE: f64 = 1e-3;
 }
 
-/// `estimate/widening.rs`: How many rows near reversals are left out: more and more, until
-/// friction does not change.
+/// Of `estimate/widening.rs`.
 pub(crate) mod widening {
     /// Standard errors of a change that are no chance.
     pub(crate) const SURE: f64 = 2.0;
@@ -235,8 +209,7 @@ pub(crate) mod widening {
     pub(crate) const LEAST: f64 = 1.0 / 16.0;
 }
 
-/// `identification.rs`: All that identification says: data alone, for tables, files and reports to
-/// show.
+/// Of `identification.rs`.
 pub(crate) mod identification {
     /// Periods of the filter's cutoff below which logs are short.
     pub(crate) const SHORT: f64 = 80.0;
@@ -258,7 +231,7 @@ pub(crate) mod identification {
     pub(crate) const FAR: f64 = 20.0;
 }
 
-/// `idle.rs`: Motors that do not carry their joints: a brake holds them, or stiction.
+/// Of `idle.rs`.
 pub(crate) mod idle {
     /// The deviation of a torque over that of the load, below which it does not follow it, if it
     /// is less like it than this: a torque in another unit follows all the same.
@@ -272,8 +245,7 @@ pub(crate) mod idle {
     pub(crate) const ROUNDING: f64 = 1e-9;
 }
 
-/// `noisy_logs.rs`: Logs of which noise of the positions makes most, and those that bias
-/// parameters by it.
+/// Of `noisy_logs.rs`.
 pub(crate) mod noisy_logs {
     /// The share of noise in what the motion shows of a direction of the parameters, from which on
     /// nothing is believed.
@@ -284,8 +256,7 @@ pub(crate) mod noisy_logs {
     pub(crate) const SHARE: f64 = 0.99;
 }
 
-/// `statics.rs`: Static identification (thesis 3.2.1): what follows from weighings and from
-/// gravity torques of held postures, without any motion.
+/// Of `statics.rs`.
 pub(crate) mod statics {
     /// Factors of torques and of angles that are tried.
     pub(crate) const OF_TORQUES: [f64; 7] = [-1.0, 1e-3, 1e-2, 0.1, 10.0, 100.0, 1e3];
@@ -308,9 +279,7 @@ pub(crate) mod statics {
     pub(crate) const OTHER_UNIT: f64 = 100.0;
 }
 
-/// `two_stage/readings.rs`: Whether the columns of a motor behind a spring are what they are taken
-/// for: its angle against that of the joint times the gear ratio, its torque against the spring of
-/// the model.
+/// Of `two_stage/readings.rs`.
 pub(crate) mod readings {
     /// How far a motor may turn, of how far gear and joint say: springs are stiff.
     pub(crate) const TURNS: [f64; 2] = [0.5, 2.0];

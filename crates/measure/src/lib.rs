@@ -3,20 +3,17 @@
 //! - [`log`]: what was measured, read and checked
 //! - [`condition`]: filtered, differentiated, decimated; noise of positions, rests, velocity
 //!   reversals
-//! - [`add_contact_forces`], [`add_wrenches`]: what the ground, and pushes, do to each equation
 //! - [`LogIndex`], [`PartIndex`], [`SampleIndex`], [`JointIndex`]: their numbers
 //! - [`Split`]: those that an answer is from, and those that judge it
 //! - [`Error`]: why a log is not read, or cannot be conditioned
 
 pub mod condition;
-mod contact_forces;
 mod error;
 mod index;
 pub mod log;
 mod policy;
 mod split;
 
-pub use contact_forces::{Ground, add_contact_forces, add_wrenches};
 pub use error::{Error, ErrorKind};
 pub use index::{JointIndex, LogIndex, PartIndex, SampleIndex};
 pub use split::Split;

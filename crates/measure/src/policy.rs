@@ -1,8 +1,7 @@
 //! The numbers that decide what is said of logs, each with its unit and where it is from: those of
 //! each module.
 
-/// `condition/derivatives.rs`: Whether logged velocities and accelerations are the derivatives of
-/// the positions.
+/// Of `condition/derivatives.rs`.
 pub(crate) mod derivatives {
     /// By how much a factor may differ from 1,
     pub(crate) const FACTOR: f64 = 0.1;
@@ -15,8 +14,7 @@ pub(crate) mod derivatives {
     pub(crate) const NOISE: f64 = 0.1;
 }
 
-/// `condition/laps.rs`: Motion that repeats: its period, the mean of its laps, and the noise that
-/// laps show.
+/// Of `condition/laps.rs`.
 pub(crate) mod laps {
     /// The share of a signal's variance by which laps may differ.
     pub(crate) const REPEATS: f64 = 0.02;
@@ -41,7 +39,7 @@ pub(crate) mod laps {
     pub(crate) const COMPARED: f64 = 0.9;
 }
 
-/// `condition/noise.rs`: Noise of measured positions, and joints that move no further than it.
+/// Of `condition/noise.rs`.
 pub(crate) mod noise {
     /// Variances of differences of white noise of variance 1: of this order, and of the one below.
     pub(crate) const GAINS: [f64; 2] = [924.0, 252.0];
@@ -60,7 +58,7 @@ pub(crate) mod noise {
     pub(crate) const ROUNDING: f64 = 1e-10;
 }
 
-/// `condition/overlap.rs`: Logs that say the same, wholly or in part: one measurement, read twice.
+/// Of `condition/overlap.rs`.
 pub(crate) mod overlap {
     /// What two readings of one measurement differ by, of the spread of positions and the size of
     /// torques: digits. Torques that were measured twice differ by their noise.
@@ -76,16 +74,14 @@ pub(crate) mod overlap {
     pub(crate) const MOVES: f64 = 0.1;
 }
 
-/// `condition/stretch.rs`: A log that is too long to be held at once, as stretches of it that are
-/// conditioned one by one.
+/// Of `condition/stretch.rs`.
 pub(crate) mod stretch {
     /// What the rest of a log may change in a stretch, as a share of its signals: some hundred
     /// roundings, so that pieces have the numbers of the whole.
     pub(crate) const FORGOTTEN: f64 = 1e-13;
 }
 
-/// `condition/reversals.rs`: Where the sign of a joint's velocity says little: near its reversals,
-/// and while it hardly moves; and functions of a velocity that pass the filter as the torque does.
+/// Of `condition/reversals.rs`.
 pub(crate) mod reversals {
     /// Samples that are left within which a decimated one has nearly all of its weight.
     pub(crate) const WEIGHED: f64 = 2.5;
@@ -101,16 +97,7 @@ pub(crate) mod reversals {
     pub(crate) const STILL: f64 = 1e-4;
 }
 
-/// `contact_forces.rs`: Robots that are pushed from outside: what contact forces, and wrenches on
-/// links, do to each equation (thesis 3.3, 5.2.1).
-pub(crate) mod contact_forces {
-    /// Half the distance of differences [rad, m]: of order 4, so that rounding and the rest of
-    /// the Taylor series are both about 1e-13.
-    pub(crate) const DIFFERENCE: f64 = 1e-3;
-}
-
-/// `log/check.rs`: Whether a log says what it seems to say: units, swapped joints, signals that do
-/// not move.
+/// Of `log/check.rs`.
 pub(crate) mod check {
     /// A step of the time from which on it hardly counts seconds.
     pub(crate) const SLOWEST_STEP_S: f64 = 0.1;
@@ -157,13 +144,13 @@ pub(crate) mod check {
     pub(crate) const IN_STEPS: f64 = 0.995;
 }
 
-/// `log/fault.rs`: What is wrong with a log, or looks wrong.
+/// Of `log/fault.rs`.
 pub(crate) mod fault {
     /// The step of a time below which it may count longer parts of a second than milliseconds.
     pub(crate) const LONGER_PARTS: f64 = 1.0;
 }
 
-/// `log/jumps.rs`: Positions that jump: slips of an encoder, laps that were joined end to end.
+/// Of `log/jumps.rs`.
 pub(crate) mod jumps {
     /// The least jump, over the range of the position, over its smallest step, and over the steps
     /// of the samples about it.
@@ -176,8 +163,7 @@ pub(crate) mod jumps {
     pub(crate) const OF_NEIGHBOURS: f64 = 5.0;
 }
 
-/// `log/mod.rs`: Logs of measurements: read, mapped to our columns, checked, brought to equal
-/// distances.
+/// Of `log/mod.rs`.
 pub(crate) mod log {
     /// What no position, velocity, torque or force of a robot reaches, in its SI unit.
     pub(crate) const LARGEST: f64 = 1e12;
@@ -186,8 +172,7 @@ pub(crate) mod log {
     pub(crate) const LARGEST_TIME: f64 = 1e20;
 }
 
-/// `log/repair.rs`: Samples at equal distances: repeated rows dropped, single missing samples
-/// filled in.
+/// Of `log/repair.rs`.
 pub(crate) mod repair {
     /// The share of samples that may be missing.
     pub(crate) const MAX_MISSING: f64 = 0.02;

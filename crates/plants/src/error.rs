@@ -1,6 +1,6 @@
 //! Why a robot is no plant, has no regression, or numbers are no reference.
 
-use denavit_codegen::model::{self, BakeError};
+use denavit_codegen::model::{self, BakeError, ModelError};
 use denavit_codegen::program::LowerError;
 use denavit_codegen::regressor::BaseError;
 use std::fmt;
@@ -30,6 +30,8 @@ pub enum ErrorKind {
     Motion,
     /// Numbers make no reference.
     Reference,
+    /// Values make no model.
+    NoModel,
 }
 
 /// What is wrong.
@@ -112,12 +114,21 @@ pub(crate) enum Cause {
     NoNumber,
     /// A frequency or a duration is not positive.
     NotPositive,
+    /// A model's file has no place for values; holds its name.
+    NoPlace(String),
+    /// With new values a file is not that of a model.
+    Unsound(Box<ModelError>),
 }
 
 impl Error {
     /// The model has no parameter of this name; `meant` is the one that was meant, perhaps.
     pub fn unknown_parameter(name: String, meant: Option<String>) -> Self {
         Cause::UnknownParameter(name, meant).into()
+    }
+
+    /// The file of a model, of this name, has no place for values.
+    pub fn no_place(model: &str) -> Self {
+        Cause::NoPlace(model.to_owned()).into()
     }
 
     /// What kind of reason it is.
@@ -141,6 +152,7 @@ impl Error {
             | Cause::NotIncreasing(_)
             | Cause::NoNumber
             | Cause::NotPositive => ErrorKind::Reference,
+            Cause::NoPlace(_) | Cause::Unsound(_) => ErrorKind::NoModel,
         }
     }
 
@@ -187,6 +199,10 @@ impl fmt::Display for Cause {
                 "the effect `{name}` depends on {what}, which simulations do not follow\n  hint: \
                  take it out of the model, or the contact points"
             ),
+            Self::NoPlace(model) => {
+                write!(f, "{model}: the identified values have no place in its file")
+            }
+            Self::Unsound(error) => write!(f, "{error}"),
             Self::Bake(error) => write!(f, "{error}"),
             Self::Lower(error) => write!(f, "{error}"),
             Self::Base(error) => write!(f, "{error}"),
@@ -261,6 +277,7 @@ impl std::error::Error for Error {
             Cause::Lower(error) => Some(error),
             Cause::Base(error) => Some(error),
             Cause::Law(_, error) => Some(error),
+            Cause::Unsound(error) => Some(error.as_ref()),
             _ => None,
         }
     }
@@ -276,6 +293,13 @@ impl From<Cause> for Error {
 impl From<BakeError> for Error {
     fn from(error: BakeError) -> Self {
         Cause::Bake(error).into()
+    }
+}
+
+/// A file with new values is not that of a model.
+impl From<ModelError> for Error {
+    fn from(error: ModelError) -> Self {
+        Cause::Unsound(Box::new(error)).into()
     }
 }
 

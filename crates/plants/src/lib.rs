@@ -10,10 +10,11 @@
 //! - [`RobotFunction`]: any function of a robot, on one sample or on many, from many threads
 //! - [`WalkingFunctions`]: momentum about the centre of mass, zero-moment point and the like
 //! - [`effect`]: laws of missing physics, with derivatives by their parameters
-//! - [`body`]: coordinates of bodies that exist
+//! - [`body`], [`coordinates`]: coordinates of bodies, and of all parameters of models, that exist
 //! - [`regression`]: torques as linear functions of the base parameters, for many samples at once
 //!
 //! - [`model_text`]: new values and effects in the text of a model file, which else stays as it is
+//! - [`updated_model`]: a model with values that were found
 //! - [`trajectory`]: references for joints
 //! - [`shipped`]: robots whose model files are part of the library
 //! - [`emitted`]: what the compiler made of some of them when this library was built
@@ -25,6 +26,7 @@
 
 pub mod batch;
 pub mod body;
+pub mod coordinates;
 mod cradle;
 mod derivatives;
 pub mod effect;
@@ -47,6 +49,7 @@ mod regression_rows;
 mod regression_values;
 pub mod shipped;
 pub mod trajectory;
+mod updated_model;
 mod walking;
 
 pub use cradle::Cradle;
@@ -62,6 +65,7 @@ pub use model::{
 };
 pub use native::{Native, NativeBatch, native_code};
 pub use passive_walkers::{KneedWalker, SimplestWalker};
+pub use updated_model::{FoundValues, UpdatedModel, updated_model};
 pub use walking::WalkingFunctions;
 
 /// The functions of a robot with n joints and c contact points. Each may use memory of its own,

@@ -15,12 +15,12 @@ use denavit_diagnose::{
     BeforeSprings, Candidate, Diagnosis, Experiment, Filters, Moved, Request, Spring, Verdict,
     before_springs, candidates, given_candidates, spring_candidates,
 };
-use denavit_measure::Ground;
 use denavit_measure::Split;
 use denavit_measure::condition::{Conditioned, Conditioning};
 use denavit_measure::log::{LogRemark, MeasuredLog};
 use denavit_plants::effect::ApartEffects;
 use denavit_plants::regression::RegressionModel;
+use denavit_replay::Ground;
 
 /// How a model is diagnosed.
 #[derive(Clone, Debug)]

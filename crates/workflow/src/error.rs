@@ -117,10 +117,12 @@ pub(crate) enum Cause {
     Plant(String, denavit_plants::Error),
     /// Nothing can be identified; holds the name of the model or of the log.
     Identify(String, denavit_identify::Error),
+    /// A log cannot be simulated again; holds its name.
+    Replay(String, denavit_replay::Error),
     /// Columns seem to be other ones than they are taken for.
     Misread(Vec<MisreadColumns>),
     /// What was found makes no model.
-    Update(denavit_identify::Error),
+    Update(denavit_plants::Error),
     /// Two stages need one log.
     OneLog,
     /// Measurements at rest do not fit the model; holds their file.
@@ -318,6 +320,7 @@ impl fmt::Display for Cause {
             Self::Condition(file, error) => write!(f, "{file}: {error}"),
             Self::Plant(model, error) => write!(f, "{model}: {error}"),
             Self::Identify(name, error) => write!(f, "{name}: {error}"),
+            Self::Replay(name, error) => write!(f, "{name}: {error}"),
             Self::Misread(all) => lines(f, all),
             Self::Update(error) => write!(f, "{error}"),
             Self::OneLog => write!(f, "`identify_two_stage` takes one log for training"),
@@ -373,6 +376,7 @@ impl std::error::Error for Error {
             Cause::Condition(_, error) => Some(error),
             Cause::Plant(_, error) => Some(error),
             Cause::Identify(_, error) | Cause::Statics(_, error) => Some(error),
+            Cause::Replay(_, error) => Some(error),
             Cause::Update(error) => Some(error),
             Cause::Diagnosis(error) => Some(error),
             Cause::NoModel { .. }

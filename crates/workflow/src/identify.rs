@@ -21,9 +21,10 @@ pub use conditions::{Conditions, FilterChoice};
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::RegressorOptions;
 use denavit_codegen::regressor::functions::modelled;
+use denavit_identify::Identification;
 use denavit_identify::estimate::{Errors, Method, Options, SlowRows};
-use denavit_identify::{Identification, UpdatedModel};
 use denavit_measure::log::LogRemark;
+use denavit_plants::UpdatedModel;
 use denavit_plants::effect::{AddedLaw, ApartEffects};
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
 use estimation::Estimation;
@@ -94,7 +95,7 @@ pub struct Identified {
     /// What was found of them.
     pub found: Identification,
     /// The model with what was found.
-    pub updated: Result<UpdatedModel, denavit_identify::Error>,
+    pub updated: Result<UpdatedModel, denavit_plants::Error>,
     /// What was noticed of logs, each with its file.
     pub remarks: Vec<(String, LogRemark)>,
     /// What became of the model's effects.
@@ -154,7 +155,7 @@ struct Head<'a> {
     read: Read,
     how: Options,
     found: Identification,
-    updated: Result<UpdatedModel, denavit_identify::Error>,
+    updated: Result<UpdatedModel, denavit_plants::Error>,
     /// Which logs for validation say the same as others.
     same: Vec<(String, LogRemark)>,
 }

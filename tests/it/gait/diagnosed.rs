@@ -3,11 +3,11 @@
 use super::identified::walked;
 use denavit::diagnose::{Filters, Request, candidates, diagnose};
 use denavit::effect;
-use denavit::measure::Ground;
 use denavit::measure::log::{ColumnMapping, LogFault, LogOf, MeasuredLog, read_log};
 use denavit::numerics::Random;
 use denavit::plants::regression::RegressionModel;
 use denavit::regressor::functions::modelled;
+use denavit::replay::Ground;
 use denavit::shipped;
 
 const STIFFNESS: f64 = 60.0;

@@ -2,12 +2,12 @@
 
 use super::{INERTIAL, robot};
 use denavit::identify::estimate::{Options, Status, estimate, parameters, validate};
-use denavit::measure::add_contact_forces;
 use denavit::measure::condition::{Conditioned, Conditioning, Filter};
 use denavit::measure::log::{ColumnMapping, LogOf, MeasuredLog, read_log};
 use denavit::numerics::Random;
 use denavit::plants::plant_of;
 use denavit::plants::regression::RegressionModel;
+use denavit::replay::add_contact_forces;
 use denavit::shipped;
 use denavit::simulate::scenario::{self, RunScheme};
 

@@ -33,6 +33,9 @@ use search::Search;
 use std::fmt;
 use weigh::{Beliefs, Shares};
 
+/// Samples of a log in which noise of its positions is looked at, before decimation.
+const LOOKED_AT: usize = 8192;
+
 /// Columns that seem to be other ones than they are taken for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MisreadColumns {
@@ -143,7 +146,9 @@ fn misread_alike(
     let latest = (policy::LATEST_S / step_s).min(shortest as f64 / 8.0) as isize;
     let beliefs = Beliefs::new(model, values);
     let given = beliefs.values.as_ref();
-    let noise = given.map(|phi| noise_of_positions(model, logs, phi.as_slice()));
+    let pieces = plain_pieces(logs);
+    let pieces: Vec<&Conditioned> = pieces.iter().collect();
+    let noise = given.map(|phi| noise_of_positions(model, &pieces, phi.as_slice()));
     let joints = model.joints.len();
     let readings = 3 * joints * joints / 2 + 20 * joints + 30;
     let [fewest, most] = policy::SAMPLES;
@@ -154,7 +159,7 @@ fn misread_alike(
     }
     let noise = [noise.unwrap_or_default(), Vec::new()];
     let mut search = Search { sample, beliefs, noise, latest, step_s };
-    search.learn_noise(logs);
+    search.learn_noise(&pieces);
     let mut all: Vec<MisreadColumns> = Vec::new();
     let mut reading = Reading::straight(joints);
     while all.len() <= joints + 1 {
@@ -184,6 +189,16 @@ fn misread_alike(
         });
     }
     all
+}
+
+/// Pieces of logs in which noise of their positions is looked at: of rows that are not decimated,
+/// as those of readings are not.
+fn plain_pieces(logs: &[&Conditioned]) -> Vec<Conditioned> {
+    let of_log = |log: &&Conditioned| -> Vec<Conditioned> {
+        let pieces = log.pieces(LOOKED_AT).into_iter();
+        pieces.map(|piece| Conditioned { decimation: 1, ..log.piece(piece) }).collect()
+    };
+    logs.iter().flat_map(of_log).collect()
 }
 
 /// Roots of the mean squares of shares, before and after, over the joints whose share changes most.

@@ -114,18 +114,9 @@ impl LeftOut {
         Self::of(logs.iter().map(|log| vec![None; log.joints()]).collect())
     }
 
-    /// What the options ask for before anything is known of friction; by default where the sign of
-    /// a rate is not known, if enough is left.
+    /// What the options ask for before anything is known of friction, however little that leaves;
+    /// by default where the sign of a rate is not known.
     pub(super) fn asked(model: &RegressionModel, logs: &[Conditioned], options: &Options) -> Self {
-        let mut asked = Self::unsure(model, logs, options);
-        if options.slow == SlowRows::Biasing {
-            (0..logs.len()).map(LogIndex).for_each(|log| asked.keep_enough(log, logs));
-        }
-        asked
-    }
-
-    /// The same, however little that leaves.
-    fn unsure(model: &RegressionModel, logs: &[Conditioned], options: &Options) -> Self {
         let of_log = |log: &Conditioned| -> Vec<Option<Vec<bool>>> {
             let slowest: Vec<f64> = match options.slow {
                 SlowRows::Biasing => {
@@ -160,7 +151,7 @@ impl LeftOut {
         options: &Options,
         widened: &[(JointIndex, f64)],
     ) -> Self {
-        let mut part = Self::unsure(model, std::slice::from_ref(log), options);
+        let mut part = Self::asked(model, std::slice::from_ref(log), options);
         for &(joint, times) in widened {
             let Some(mut near) = log.near_reversals(joint, times) else { continue };
             let before = part.rows[0][joint.0].iter().flatten();
@@ -168,19 +159,6 @@ impl LeftOut {
             part.rows[0][joint.0] = Some(near);
         }
         part
-    }
-
-    /// Leaves out nothing of joints of a log of which too little would be left.
-    pub(super) fn keep_enough(&mut self, number: LogIndex, logs: &[Conditioned]) {
-        let log = &logs[number.0];
-        let (own, start) = (NumberedLog { number, log }, SampleIndex(0));
-        for joint in (0..log.joints()).map(JointIndex) {
-            let Some(counts) = self.counts(own, joint, start, log.samples()) else { continue };
-            let kept = counts.into_iter().filter(|counts| *counts).count() as f64;
-            if kept < LEAST * log.samples() as f64 {
-                self.rows[number.0][joint.0] = None;
-            }
-        }
     }
 
     /// The same of other logs.

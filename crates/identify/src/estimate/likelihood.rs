@@ -15,9 +15,6 @@ use denavit_plants::regression::{RegressionModel, RegressionRows};
 /// Samples in a block.
 const BLOCK: usize = 512;
 
-/// Blocks of a log in which noise is looked at.
-const LOOKED_AT: usize = 4;
-
 /// Variances of rows from noise of the positions.
 pub(super) struct Variance {
     /// Log, joint, sample [(N m)^2, N^2].
@@ -37,7 +34,7 @@ impl Variance {
             let both = log.position_noise.iter().copied().chain(std::iter::repeat(0.0)).zip(known);
             let deviations: Vec<f64> =
                 both.take(log.joints()).map(|(own, known)| own.max(known)).collect();
-            of_log(model, log, 1, phi, &deviations, &log.noise_gains())
+            of_log(model, log, phi, &deviations)
         };
         Self { of_positions: logs.iter().map(of_log).collect() }
     }
@@ -70,51 +67,20 @@ impl Variance {
     }
 }
 
-/// How much of each joint's torque noise of the positions makes up by itself after the filter,
-/// root of mean square over root of mean square, looked at in some blocks of each log.
-pub(crate) fn noise_of_positions(
-    model: &RegressionModel,
-    logs: &[&Conditioned],
-    phi: &[f64],
-) -> Vec<f64> {
-    let mut sums = vec![[0.0; 2]; model.joints.len()];
-    for log in logs {
-        let every = log.samples().div_ceil(BLOCK * LOOKED_AT).max(1);
-        let rows = of_log(model, log, every, phi, &log.position_noise, &log.filter_gains());
-        let looked_at = |sample: &usize| (sample / BLOCK).is_multiple_of(every);
-        let count = (0..log.samples()).filter(looked_at).count().max(1) as f64;
-        let weight = log.samples() as f64;
-        for ((sums, row), torque) in sums.iter_mut().zip(rows).zip(&log.torque) {
-            let torque = &torque.as_deref().unwrap_or_default();
-            let torque = torque.get(log.range.clone()).unwrap_or_default();
-            let squares = torque.iter().map(|torque| torque * torque).sum::<f64>();
-            sums[0] += weight * row.iter().sum::<f64>() / count;
-            sums[1] += weight * squares / torque.len().max(1) as f64;
-        }
-    }
-    let share = |[noise, torque]: [f64; 2]| match torque > 0.0 {
-        true => (noise / torque).sqrt(),
-        false => 0.0,
-    };
-    sums.into_iter().map(share).collect()
-}
-
-/// Of every so many blocks of a log one is looked at; the variances of others are 0.
+/// For each joint what noise of the positions makes of each row.
 fn of_log(
     model: &RegressionModel,
     log: &Conditioned,
-    every: usize,
     phi: &[f64],
     deviations: &[f64],
-    gains: &[[f64; 3]; 3],
 ) -> Vec<Vec<f64>> {
-    let n = log.joints();
+    let (n, gains) = (log.joints(), log.noise_gains());
     let samples = log.samples();
     let mut variance = vec![vec![0.0; samples]; n];
     let mut evaluator = model.evaluator();
     let (mut rows, mut motion) = (RegressionRows::default(), Vec::new());
     let own: Vec<Vec<f64>> = (0..n).map(|joint| model.of_joint(joint, phi)).collect();
-    for first in (0..samples).step_by(BLOCK * every) {
+    for first in (0..samples).step_by(BLOCK) {
         let count = BLOCK.min(samples - first);
         log.motion_at(SampleIndex(first), count, &mut motion);
         for joint in 0..n {

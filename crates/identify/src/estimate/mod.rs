@@ -10,7 +10,6 @@
 //! - [`long`]: logs that are too long to be held at once
 //! - [`consistent()`]: the nearest bodies that exist
 
-mod bounds;
 mod comparison;
 mod condensed;
 mod consistent;
@@ -51,9 +50,8 @@ pub use least_squares::{Estimate, Method, Options, estimate};
 pub use left_out::SlowRows;
 pub(crate) use left_out::{biased_frictions, is_biased};
 pub(crate) use left_over::lacking;
-pub(crate) use likelihood::noise_of_positions;
 pub use noise_bias::NoiseOfLog;
-pub(crate) use noise_bias::noise_in_torques;
+pub(crate) use noise_bias::noise_of_positions;
 pub(crate) use nominal::{is_of_joints, nominal_values};
 pub(crate) use one_equation::OneEquation;
 pub use report::{Convergence, IdentifiedParameter, Status, convergence, parameters};

@@ -116,22 +116,28 @@ pub(super) fn noise_squares(
     squares
 }
 
-/// How much of each joint's torque in a log noise of its positions makes with phi, root of mean
+/// How much of each joint's torque in logs noise of their positions makes with phi, root of mean
 /// square over root of mean square; 0 where none was measured.
-pub(crate) fn noise_in_torques(
+pub(crate) fn noise_of_positions(
     model: &RegressionModel,
-    log: &Conditioned,
+    logs: &[&Conditioned],
     phi: &[f64],
 ) -> Vec<f64> {
-    let all = LeftOut::none(std::slice::from_ref(log));
-    let own = NumberedLog { number: LogIndex(0), log };
-    let noise = noise_squares(model, own, &all, &DVector::from_column_slice(phi));
-    let left = validate(model, phi, &[log]);
-    let share = |(joint, noise): (&RegressionJoint, f64)| {
-        let torque = left.joint(&joint.name)?.torque_rms;
-        (torque > 0.0).then(|| (noise / log.samples() as f64).sqrt() / torque)
+    let left = validate(model, phi, logs);
+    let phi = DVector::from_column_slice(phi);
+    let of_log = |log: &&Conditioned| {
+        let all = LeftOut::none(std::slice::from_ref(*log));
+        noise_squares(model, NumberedLog { number: LogIndex(0), log }, &all, &phi)
     };
-    model.joints.iter().zip(noise).map(|both| share(both).unwrap_or(0.0)).collect()
+    let noise: Vec<Vec<f64>> = logs.iter().map(of_log).collect();
+    let share = |(joint, described): (usize, &RegressionJoint)| {
+        let torque = left.joint(&described.name)?.torque_rms;
+        let measured = logs.iter().filter(|log| log.torque[joint].is_some());
+        let rows: usize = measured.map(|log| log.samples()).sum();
+        let noise: f64 = noise.iter().map(|of_log| of_log[joint]).sum();
+        (torque > 0.0).then(|| (noise / rows as f64).sqrt() / torque)
+    };
+    model.joints.iter().enumerate().map(|one| share(one).unwrap_or(0.0)).collect()
 }
 
 /// Calls `visit` with blocks of a log, of which so many samples are looked at before decimation:

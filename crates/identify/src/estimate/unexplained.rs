@@ -3,12 +3,9 @@
 
 use super::least_squares::Estimate;
 use super::left_over::Left;
-use super::likelihood::noise_of_positions;
 use super::rows::BlockMaker;
 use super::validate::{Validation, validate};
-use crate::policy::unexplained::{
-    ALIKE, AT_REST, LEFT, LEFT_ALIKE, LEFT_AT_REST, OF_NOISE, STICTION,
-};
+use crate::policy::unexplained::{ALIKE, AT_REST, LEFT, LEFT_ALIKE, LEFT_AT_REST, STICTION};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
@@ -108,16 +105,12 @@ pub fn unexplained_joints(
     let ShownLogs { logs, shown } = shown_logs;
     let phi = judged.found.solution.phi.as_slice();
     let together: Vec<&Conditioned> = shown.iter().map(|&log| &logs[log.0]).collect();
-    // a joint that moves may be left with nothing but noise of the positions
-    let noise = noise_of_positions(model, &together, phi);
-    let least: Vec<f64> = noise.iter().map(|noise| (OF_NOISE * noise).max(LEFT)).collect();
-    let mut all = moving(model, &together, judged, &least);
-    let not_noise = vec![f64::INFINITY; noise.len()];
+    let mut all = moving(model, &together, judged, LEFT);
     for &log in &together {
         let left = validate(model, phi, &[log]);
         let mut own = resting(model, log, judged.found, &left);
         if logs.len() > 1 {
-            own.extend(moving(model, &[log], Judgement { left: &left, ..judged }, &not_noise));
+            own.extend(moving(model, &[log], Judgement { left: &left, ..judged }, f64::INFINITY));
         }
         own.retain(|one| all.iter().all(|other| other.joint != one.joint || other.file.is_some()));
         let file = (logs.len() > 1).then(|| log.file.clone());
@@ -126,23 +119,23 @@ pub fn unexplained_joints(
     all
 }
 
-/// The joints that move and of whose torque much that is no noise is left, or so much in any case.
+/// The joints that move and of whose torque much that is no noise is left, or `most` in any case.
 fn moving(
     model: &RegressionModel,
     logs: &[&Conditioned],
     judged: Judgement<'_>,
-    noise: &[f64],
+    most: f64,
 ) -> Vec<Unexplained> {
     let lag = logs.iter().map(|log| samples_of(log, 0.5)).max().unwrap_or(1);
-    let of = |(((joint, moves), counted), noise): (((&RegressionJoint, bool), &f64), &f64)| {
+    let of = |((joint, moves), counted): ((&RegressionJoint, bool), &f64)| {
         let found = judged.left.joint(&joint.name)?;
         let is_alike = found.autocorrelation.get(lag - 1).is_some_and(|one| *one > ALIKE);
-        let least = if is_alike && *counted > LEFT_ALIKE { LEFT_ALIKE } else { *noise };
+        let least = if is_alike && *counted > LEFT_ALIKE { LEFT_ALIKE } else { most };
         let is_left = !joint.is_base && moves && found.relative > least;
         is_left.then(|| Unexplained::of(&joint.name, found.relative))
     };
     let moving = moves(model, logs);
-    model.joints.iter().zip(moving).zip(judged.counted).zip(noise).filter_map(of).collect()
+    model.joints.iter().zip(moving).zip(judged.counted).filter_map(of).collect()
 }
 
 /// The joints of whose torque something that is no noise is left while they rest, and more than

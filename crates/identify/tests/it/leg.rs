@@ -1,15 +1,16 @@
 //! The simulated experiment of thesis 3.3.3, a few times: the true values of table 3.4 are within
 //! intervals as often as these say. examples/identification_coverage.rs does it 200 times.
 
-use super::robot;
+use super::{random_motion, robot, torques};
 use denavit_codegen::regressor::RegressorOptions;
-use denavit_identify::estimate::{Options, estimate};
+use denavit_identify::estimate::{Options, consistent, estimate};
 use denavit_measure::condition::{Conditioned, Conditioning, Filter};
 use denavit_measure::log::{JointSignals, MeasuredLog};
-use denavit_numerics::interval_factor;
+use denavit_numerics::{Random, interval_factor};
 use denavit_plants::regression::RegressionModel;
 use denavit_plants::shipped;
 use denavit_simulate::{Log, scenario};
+use nalgebra::DVector;
 
 /// The columns of table 3.6, and the values of table 3.4.
 const PRINTED: [(&str, f64); 14] = [
@@ -95,4 +96,43 @@ fn the_true_values_of_table_3_4_are_within_their_intervals() {
     let count = 24.0 * seeds as f64;
     assert!(covered as f64 >= 0.88 * count, "{covered} of {count}");
     assert!((0.5..1.6).contains(&(squares / count)), "{}", squares / count);
+}
+
+/// The moment of inertia of a link is a sum of two unknowns, each of which may have either sign. Of
+/// data that make the sum negative the nearest parameters of bodies that exist are others.
+#[test]
+fn no_moment_that_is_a_sum_is_negative() {
+    let keep: Vec<String> = PRINTED.iter().map(|(name, _)| (*name).to_owned()).collect();
+    let robot = robot("tulip_leg_table34");
+    let model = RegressionModel::new(&robot, RegressorOptions::default(), &keep).expect("a model");
+    let printed = |name: &str| PRINTED.iter().find(|(own, _)| *own == name).expect("printed").1;
+    let value = |name: &str| if name == "e3" { -0.6 } else { printed(name) };
+    let listed = model.listed.iter().map(|one| value(&one.name));
+    let listed = DVector::from_iterator(model.rank(), listed);
+    let phi = model.to_listed().clone().lu().solve(&listed).expect("a change of basis");
+    let (n, samples) = (model.joints.len(), 400);
+    let motion = random_motion(n, samples, 3);
+    let mut random = Random::new(4);
+    let mut noisy = |torque: Vec<f64>| -> Vec<f64> {
+        torque.into_iter().map(|torque| torque + 0.01 * random.normal()).collect()
+    };
+    let data = Conditioned {
+        step_s: 0.01,
+        q: motion[..n].to_vec(),
+        rates: Some([motion[n..2 * n].to_vec(), motion[2 * n..].to_vec()]),
+        torque: torques(&model, &motion, phi.as_slice())
+            .into_iter()
+            .map(|torque| Some(noisy(torque)))
+            .collect(),
+        range: 0..samples,
+        decimation: 1,
+        ..Conditioned::default()
+    };
+    let found = estimate(&model, &[data], &[], &Options::default(), &vec![0.0; model.rank()]);
+    let start: Vec<f64> = model.standard.iter().map(|one| one.value.unwrap_or(0.1)).collect();
+    let near = consistent(&model, &found.expect("the motion excites"), &start);
+    let mut values: Vec<f64> = model.parameters.iter().map(|one| one.value).collect();
+    near.own.iter().for_each(|&(place, value)| values[place] = value);
+    let least = model.masses_and_moments(&values).into_iter().fold(f64::INFINITY, f64::min);
+    assert!(least >= 0.0 && near.distance > 1.0, "{least} {}", near.distance);
 }

@@ -2,7 +2,6 @@
 
 mod emps;
 mod estimate;
-mod forward;
 mod friction;
 mod leg;
 mod log;

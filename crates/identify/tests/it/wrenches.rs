@@ -2,9 +2,9 @@
 
 use super::robot;
 use denavit_measure::log::{JointSignals, LogRemark, MeasuredLog};
-use denavit_measure::{add_contact_forces, add_wrenches};
 use denavit_numerics::Random;
 use denavit_plants::{plant_of, point_positions};
+use denavit_replay::{add_contact_forces, add_wrenches};
 
 const SAMPLES: usize = 5;
 

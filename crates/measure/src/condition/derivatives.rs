@@ -6,12 +6,12 @@
 
 use super::{Conditioned, STENCIL, acceleration, rate};
 use crate::JointIndex;
-use crate::error::Cause;
+use crate::error::{Error, ErrorKind};
 use crate::policy::derivatives::{DELAY, FACTOR, NOISE};
 
 impl Conditioned {
     /// Refuses logged rates and accelerations that are not derivatives of the positions.
-    pub(super) fn compare_rates(&self, names: &[String]) -> Result<(), Cause> {
+    pub(super) fn compare_rates(&self, names: &[String]) -> Result<(), Error> {
         let Some(rates) = &self.rates else { return Ok(()) };
         let gains = self.filter_gains();
         for (joint, name) in names.iter().enumerate().filter(|(at, _)| !self.resting[*at]) {
@@ -21,8 +21,13 @@ impl Conditioned {
                 if let Some([factor, late_s]) =
                     self.compared(JointIndex(joint), order, column, noise)
                 {
-                    let column = format!("{prefix}_{name}");
-                    return Err(Cause::NotTheDerivative { column, factor, late_s });
+                    let text = format!(
+                        "`{prefix}_{name}` is not the derivative of the position: it is \
+                         {factor:.3} times that, {late_s:.4} s late\n  hint: `logs.columns` scales \
+                         columns; `conditions.derivatives=differences` takes the derivatives of \
+                         the positions"
+                    );
+                    return Err(Error::new(ErrorKind::Derivatives, text));
                 }
             }
         }

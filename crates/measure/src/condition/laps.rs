@@ -1,7 +1,8 @@
 //! Motion that repeats: its period, the mean of its laps, and the noise that laps show.
 
-use crate::error::{Cause, Error};
+use crate::error::{Error, ErrorKind};
 use crate::policy::laps::{COMPARED, DIGITS, FEWEST, LEFT_BY_LAP, MOVES, REPEATS, SETTLED};
+use denavit_numerics::short;
 use std::ops::Range;
 
 /// Samples that a search for the period looks at, at most.
@@ -129,7 +130,7 @@ impl Laps {
         period_s: f64,
         step_s: f64,
         span: Range<usize>,
-    ) -> Result<Self, Cause> {
+    ) -> Result<Self, Error> {
         let period = period_s / step_s;
         let laps = Self::of_period(period, step_s, span.clone())?;
         let moving = moving(positions, span.clone());
@@ -141,24 +142,33 @@ impl Laps {
         let misfit = compared.misfit(period);
         match misfit < REPEATS {
             true if away.abs() >= DIGITS => {
-                Err(Cause::OtherPeriod { period_s, longer: away > 0.0 })
+                let how = if away > 0.0 { "longer" } else { "shorter" };
+                let why =
+                    format!("the motion repeats with a period that is {how} by a sample or more");
+                Err(not_repeated(period_s, &why))
             }
             true => Self::of_period(period, step_s, span),
-            false => Err(Cause::NotRepeated { period_s, misfit }),
+            false => {
+                let percent = 100.0 * misfit;
+                let why = format!("they differ by {percent:.0} % of the variance of a joint");
+                Err(not_repeated(period_s, &why))
+            }
         }
     }
 
     /// Laps of a period in samples from sample `start` on.
-    fn of_period(period: f64, step_s: f64, span: Range<usize>) -> Result<Self, Cause> {
-        let period_s = period * step_s;
+    fn of_period(period: f64, step_s: f64, span: Range<usize>) -> Result<Self, Error> {
+        let [period_s, step] = [period * step_s, step_s].map(short);
         if !(period >= FEWEST && period.is_finite()) {
-            return Err(Cause::ShortPeriod { period_s, step_s });
+            return Err(refused(format!(
+                "a period of {period_s} s has too few samples of {step} s for a lap"
+            )));
         }
         match (span.len() as f64 / period + 1e-9).floor() as usize {
             count @ 2.. => {
                 Ok(Self { start: span.start, period, samples: period.round() as usize, count })
             }
-            _ => Err(Cause::OneLap { period_s }),
+            _ => Err(refused(format!("the log has no two whole laps of {period_s} s"))),
         }
     }
 
@@ -169,7 +179,7 @@ impl Laps {
         let stride = samples.div_ceil(SEARCHED).max(1);
         let moving = moving(positions, span.clone());
         if moving.is_empty() {
-            return Err(Cause::NoPeriod.into());
+            return Err(no_period());
         }
         let compared = Compared::new(&moving, span.clone(), stride);
         // From the first lag at which the motion has become another one.
@@ -185,7 +195,7 @@ impl Laps {
                 break;
             }
         }
-        let (near, _) = best.ok_or(Cause::NoPeriod)?;
+        let (near, _) = best.ok_or_else(no_period)?;
         let nearby = near.saturating_sub(2 * stride).max(1)..=near + 2 * stride;
         let lag = nearby
             .filter(|&lag| 2 * lag <= samples)
@@ -194,7 +204,7 @@ impl Laps {
             .map_or(near, |(lag, _)| lag);
         let count = samples / lag;
         let period = refined(&compared, lag as f64, count);
-        Ok(Self::of_period(period, step_s, span)?)
+        Self::of_period(period, step_s, span)
     }
 
     /// The distance of the mean lap's samples, in those of the log.
@@ -202,9 +212,8 @@ impl Laps {
         self.period / self.samples as f64
     }
 
-    /// The mean lap of a signal, which must have three more samples on either side, and the
-    /// standard deviation of one sample about it.
-    pub fn mean(&self, signal: &[f64]) -> (Vec<f64>, f64) {
+    /// The mean lap of a signal, which must have three more samples on either side.
+    pub fn mean(&self, signal: &[f64]) -> Vec<f64> {
         let Self { start, period, samples, count } = *self;
         let distance = self.distance();
         let at = |lap: usize, k: usize| {
@@ -214,15 +223,25 @@ impl Laps {
             let place = if (place - near).abs() < 1e-6 { near } else { place };
             between(signal, place)
         };
-        let mean: Vec<f64> = (0..samples)
-            .map(|k| (0..count).map(|lap| at(lap, k)).sum::<f64>() / count as f64)
-            .collect();
-        let squares: f64 = (0..count)
-            .flat_map(|lap| (0..samples).map(move |k| (lap, k)))
-            .map(|(lap, k)| (at(lap, k) - mean[k]).powi(2))
-            .sum();
-        (mean, (squares / ((count - 1) * samples) as f64).sqrt())
+        (0..samples).map(|k| (0..count).map(|lap| at(lap, k)).sum::<f64>() / count as f64).collect()
     }
+}
+
+/// Laps that are not averaged.
+fn refused(text: impl Into<String>) -> Error {
+    Error::new(ErrorKind::Laps, text)
+}
+
+fn no_period() -> Error {
+    refused("the motion does not repeat\n  hint: give its period, or do not average")
+}
+
+fn not_repeated(period_s: f64, why: &str) -> Error {
+    refused(format!(
+        "laps of {} s do not repeat: {why}\n  hint: `found` looks for the period; or do not \
+         average",
+        short(period_s)
+    ))
 }
 
 /// A period to more digits: over two laps, four and so on what it lacks adds up.
@@ -277,8 +296,7 @@ mod tests {
                 Laps::given(&positions, 1e-3 * rounded, 1e-3, 20..5980).expect("it repeats");
             for laps in [found, given] {
                 assert!((laps.period - period).abs() < 1e-4, "{} {period}", laps.period);
-                let (mean, noise) = laps.mean(&positions[0]);
-                assert!(noise < 1e-3, "{period}: {noise}");
+                let mean = laps.mean(&positions[0]);
                 // the seam is none
                 let bend = |a: f64, b: f64, c: f64| (a - 2.0 * b + c).abs();
                 let inside = mean.windows(3).map(|one| bend(one[0], one[1], one[2]));
@@ -302,8 +320,8 @@ mod tests {
         let given = |period_s: f64| Laps::given(&positions, period_s, 1e-3, 20..2680);
         assert_eq!(given(0.64).map(|laps| laps.count), Ok(4));
         for wrong in [0.6, 0.32, 0.7] {
-            let refused = matches!(given(wrong), Err(Cause::NotRepeated { .. }));
-            assert!(refused, "{wrong}: {:?}", given(wrong));
+            let refused = given(wrong).expect_err("other laps").to_string();
+            assert!(refused.contains("% of the variance of a joint"), "{wrong}: {refused}");
         }
     }
 
@@ -313,8 +331,9 @@ mod tests {
         let positions = [two_harmonics(640.0, 2700)];
         let given = |period_s: f64| Laps::given(&positions, period_s, 1e-3, 20..2680);
         for (wrong, is_longer) in [(0.638, true), (0.6425, false), (0.644, false)] {
-            let expected = Cause::OtherPeriod { period_s: wrong, longer: is_longer };
-            assert_eq!(given(wrong), Err(expected));
+            let expected = if is_longer { "is longer by" } else { "is shorter by" };
+            let refused = given(wrong).expect_err("other laps").to_string();
+            assert!(refused.contains(expected), "{wrong}: {refused}");
         }
         assert!(given(0.6405).is_ok());
     }
@@ -322,17 +341,16 @@ mod tests {
     #[test]
     fn what_never_repeats_has_no_period() {
         let slope: Vec<f64> = (0..1000).map(f64::from).collect();
-        assert_eq!(Laps::find(&[slope], 1e-3, 0..1000), Err(Cause::NoPeriod.into()));
+        assert_eq!(Laps::find(&[slope], 1e-3, 0..1000), Err(no_period()));
     }
 
     #[test]
-    fn laps_show_the_noise_of_a_sample() {
+    fn laps_are_averaged() {
         let mut random = denavit_numerics::Random::new(3);
         let noisy: Vec<f64> =
             two_harmonics(500.0, 5000).into_iter().map(|x| x + 0.1 * random.normal()).collect();
         let laps = Laps { start: 0, period: 500.0, samples: 500, count: 10 };
-        let (mean, noise) = laps.mean(&noisy);
-        assert!((noise - 0.1).abs() < 0.005, "{noise}");
+        let mean = laps.mean(&noisy);
         let clean = two_harmonics(500.0, 500);
         assert!(mean.iter().zip(&clean).all(|(a, b)| (a - b).abs() < 0.2));
     }

@@ -19,7 +19,7 @@ pub use pieces::Piece;
 pub use stretch::{Stretch, Stretches};
 
 use super::log::{JointSignals, MeasuredLog};
-use crate::error::{Cause, Error};
+use crate::error::{Error, ErrorKind};
 use crate::{JointIndex, SampleIndex};
 use std::ops::Range;
 
@@ -90,8 +90,6 @@ pub struct Conditioned {
     pub decimation: usize,
     /// The filter that positions and torques went through.
     pub filter: Option<Butterworth>,
-    /// Standard deviation of the torque of each joint about the mean lap, where there are laps.
-    pub lap_noise: Option<Vec<Option<f64>>>,
     /// The laps that were found in the log.
     pub laps: Option<Laps>,
     /// Deviation of each measured position before the filter, from steps of its encoder or from
@@ -146,7 +144,10 @@ impl Conditioned {
                 }
             }
             if logged {
-                let no_rates = || Cause::NoRates(name.clone());
+                let no_rates = || {
+                    let text = format!("`qd_{name}` and `qdd_{name}` are not both in the log");
+                    Error::new(ErrorKind::Derivatives, text)
+                };
                 for (column, all) in [qd, qdd].into_iter().zip(&mut rates) {
                     let mut column = column.ok_or_else(no_rates)?;
                     if let Some(filter) = &filter {
@@ -162,14 +163,16 @@ impl Conditioned {
         found.filter = filter;
         found.rest();
         if !found.resting.contains(&false) {
-            return Err(Cause::NothingMoves.into());
+            let text = "no joint moves further than its noise\n  hint: noise is that of the steps \
+                        of its encoder: `options.resolution` in rad or m, if it was given";
+            return Err(Error::new(ErrorKind::NothingMoves, text));
         }
         found.compare_rates(names)?;
         found.average(how.averaging)?;
         Ok(found)
     }
 
-    /// Replaces laps by their mean: everything once, with the noise that the laps show.
+    /// Replaces laps by their mean: everything once.
     fn average(&mut self, averaging: Averaging) -> Result<(), Error> {
         // values between samples need some on either side
         let samples = self.q.first().map_or(0, Vec::len);
@@ -186,24 +189,16 @@ impl Conditioned {
             let n = mean.len();
             (0..n + 2 * wrap).map(|k| mean[(k + n * wrap.div_ceil(n) - wrap) % n]).collect()
         };
-        for q in &mut self.q {
-            *q = around(&laps.mean(q).0);
-        }
-        for column in self.rates.iter_mut().flatten().flatten() {
-            *column = around(&laps.mean(column).0);
-        }
-        let mut noise = Vec::new();
-        for torque in &mut self.torque {
-            let mean = torque.as_ref().map(|torque| laps.mean(torque));
-            noise.push(mean.as_ref().map(|(_, noise)| *noise));
-            *torque = mean.map(|(mean, _)| around(&mean));
+        let rates = self.rates.iter_mut().flatten().flatten();
+        let torques = self.torque.iter_mut().flatten();
+        for column in self.q.iter_mut().chain(rates).chain(torques) {
+            *column = around(&laps.mean(column));
         }
         self.start_s += laps.start as f64 * self.step_s;
         // the filter's cutoff, in samples, is as good as the same
         self.step_s *= laps.distance();
         self.start_s -= wrap as f64 * self.step_s;
         self.range = edge..laps.samples + 2 * wrap - edge;
-        self.lap_noise = Some(noise);
         self.laps = Some(laps);
         Ok(())
     }
@@ -333,11 +328,11 @@ impl Conditioned {
     }
 }
 
-fn lawful(filter: Filter, step_s: f64) -> Result<Butterworth, Cause> {
+fn lawful(filter: Filter, step_s: f64) -> Result<Butterworth, Error> {
     let Filter { order, cutoff_hz } = filter;
     let limit_hz = 0.5 / step_s;
     let found = Butterworth::new(order, cutoff_hz, step_s);
-    found.ok_or(Cause::Cutoff { cutoff_hz, limit_hz })
+    found.ok_or_else(|| Error::cutoff(cutoff_hz, limit_hz))
 }
 
 /// The first difference of sixth order, per sample.

@@ -49,7 +49,6 @@ impl Conditioned {
             position_noise: self.position_noise.clone(),
             encoders: self.encoders.clone(),
             laps: self.laps,
-            ..Self::default()
         }
     }
 

@@ -1,6 +1,5 @@
 //! What is wrong with a log, or looks wrong.
 
-use super::repair::FEWEST_ROWS;
 use crate::policy::fault::LONGER_PARTS;
 use denavit_logs::{FileFault, FileRemark, Place};
 use denavit_numerics::short;
@@ -29,35 +28,20 @@ pub enum LogFault {
     MissingForces { columns: Vec<String> },
     /// Several of our columns are taken from one of the log.
     SharedColumn { column: String, ours: Vec<String> },
-    /// One of our columns may be one of several of the log.
-    Ambiguous { column: String, several: Vec<String> },
     /// A number that nothing of a robot can be.
     Impossible { column: String, value: f64, at: Place },
     /// A name that is mapped is none of the model's columns.
     UnknownName { name: String, nearest: Option<String> },
     /// The log says that it is of another model.
     OtherModel { log: String, model: String },
-    /// The header names a side of the gears that there is not.
-    TorqueSide { found: String },
-    /// The log has joints that the model does not have.
-    OtherJoints { joints: Vec<String> },
-    /// Fewer rows than anything can be made of.
-    TooShort { rows: usize },
     /// Cells without a number, more than are filled in.
     Undefined { column: String, count: usize, at: Place },
     /// A time that is before the one of the row above.
     TimeNotIncreasing { at: Place },
-    /// A time twice, with other numbers beside it.
-    TimeRepeated { at: Place },
-    /// The distances of samples scatter too much for derivatives.
-    Jitter { relative: f64 },
     /// Samples are missing, more than are filled in.
     Gaps { missing: usize, samples: usize, longest: usize, at: Place },
-    /// Samples are not where a clock of equal steps has them, by so many steps, in a log that is
-    /// read piece by piece.
-    OffClock { steps: f64 },
-    /// Samples had to be repaired in a log that is read piece by piece; how.
-    Repaired { how: Box<LogRemark> },
+    /// Something else, in words.
+    Other { text: String, at: Option<Place> },
     /// The log says something else than it seems to.
     Suspicion(Suspicion),
     /// No joint moves.
@@ -135,26 +119,20 @@ pub enum LogRemark {
     Resampled { jitter: f64 },
     /// A joint that does not move.
     Resting { joint: String },
-    /// A joint that does not move, and whose torque does not follow its load.
-    Idle { joint: String },
     /// The torque stands at its extreme value.
     Saturated { column: String, share: f64, value: f64 },
     /// Positions have steps of these sizes, as of encoders.
     Steps { columns: Vec<(String, f64)> },
-    /// The torque that was commanded is taken for the measured one.
-    CommandedTorque { joint: String },
     /// Torques of motors were multiplied by the gear ratios.
     MotorTorques { joints: Vec<String> },
-    /// The default filter has a lower cutoff, since noise of positions biased parameters.
-    LoweredFilter { cutoff_hz: f64 },
     /// There are wrenches of a link that the model does not have: they count for nothing.
     NoSuchLink { link: String },
-    /// Laps were replaced by their mean.
-    Averaged { laps: usize, period_s: f64 },
     /// The log says the same as another one, which the estimate is from.
     SameAs { other: String },
     /// A suspicion that was accepted.
     Accepted(Suspicion),
+    /// Something else, in words.
+    Other(String),
 }
 
 impl fmt::Display for LogFaults {
@@ -174,13 +152,18 @@ impl fmt::Display for LogFaults {
 }
 
 impl LogFault {
+    /// What is wrong, in words.
+    pub fn other(text: impl Into<String>) -> Self {
+        Self::Other { text: text.into(), at: None }
+    }
+
     /// The place that it is about.
     pub fn place(&self) -> Option<Place> {
         match *self {
             Self::File(ref fault) => fault.place(),
+            Self::Other { at, .. } => at,
             Self::Undefined { at, .. }
             | Self::TimeNotIncreasing { at }
-            | Self::TimeRepeated { at }
             | Self::Impossible { at, .. }
             | Self::Gaps { at, .. } => Some(at),
             _ => None,
@@ -228,23 +211,6 @@ fn shared_column(f: &mut fmt::Formatter<'_>, column: &str, ours: &[String]) -> f
     )
 }
 
-fn off_clock(f: &mut fmt::Formatter<'_>, steps: f64) -> fmt::Result {
-    write!(
-        f,
-        "samples are {steps:.1} steps from where equal distances of time have them\n  hint: a log \
-         that is read piece by piece has all of its samples: cut it where some are missing, or \
-         resample it"
-    )
-}
-
-fn repaired(f: &mut fmt::Formatter<'_>, how: &LogRemark) -> fmt::Result {
-    write!(
-        f,
-        "{how}: a log that is read piece by piece is not repaired\n  hint: cut it before and \
-         behind these rows, or resample it"
-    )
-}
-
 impl fmt::Display for LogFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -256,14 +222,6 @@ impl fmt::Display for LogFault {
             Self::MissingTorque { column, nearest } => missing_torque(f, column, nearest),
             Self::MissingForces { columns } => missing_forces(f, columns),
             Self::SharedColumn { column, ours } => shared_column(f, column, ours),
-            Self::Ambiguous { column, several } => {
-                let several: Vec<String> = several.iter().map(|one| format!("`{one}`")).collect();
-                write!(
-                    f,
-                    "`{column}` may be {}\n  hint: `logs.columns` says which it is",
-                    several.join(" or ")
-                )
-            }
             Self::Impossible { column, value, .. } => {
                 write!(f, "{value:e} in column `{column}`: nothing of a robot is so large")
             }
@@ -277,42 +235,19 @@ impl fmt::Display for LogFault {
             Self::OtherModel { log, model } => {
                 write!(f, "is a log of `{log}`, and the model is `{model}`")
             }
-            Self::TorqueSide { found } => write!(
-                f,
-                "`# torque_side: {found}`: there are `joint` and `motor`\n  hint: write where the \
-                 torques were measured"
-            ),
-            Self::OtherJoints { joints } => write!(
-                f,
-                "has joints that the model does not have: {}\n  hint: is it a log of this robot?",
-                joints.join(", ")
-            ),
-            Self::TooShort { rows } => {
-                let rows = if *rows == 0 { "no rows".to_owned() } else { format!("{rows} rows") };
-                write!(f, "{rows}: at least {FEWEST_ROWS} are needed")
-            }
             Self::Undefined { column, count, .. } => write!(
                 f,
                 "{count} cells of column `{column}` have no number, more than can be filled in"
             ),
             Self::TimeNotIncreasing { .. } => write!(f, "the time is before that of the row above"),
-            Self::TimeRepeated { .. } => {
-                write!(f, "the time is that of the row above, with other numbers")
-            }
-            Self::Jitter { relative } => write!(
-                f,
-                "the distances of samples scatter by {:.0} %, too much for derivatives",
-                100.0 * relative
-            ),
             Self::Gaps { missing, samples, longest, .. } => write!(
                 f,
                 "{missing} of {samples} samples are missing, up to {longest} at once: more than \
                  can be filled in\n  hint: cut the log at its gaps"
             ),
             Self::Suspicion(suspicion) => write!(f, "{suspicion}"),
-            Self::OffClock { steps } => off_clock(f, *steps),
-            Self::Repaired { how } => repaired(f, how),
             Self::NothingMoves => write!(f, "no joint moves"),
+            Self::Other { text, .. } => write!(f, "{text}"),
         }
     }
 }
@@ -436,38 +371,22 @@ impl fmt::Display for LogRemark {
                      shows is not identified, and stiction may hide in its torque"
                 )
             }
-            Self::Idle { joint } => write!(
-                f,
-                "`{joint}` rests, and its torque does not follow the load that the motion of the \
-                 others makes: a brake holds it, or stiction. Its torque was left out"
-            ),
             Self::Saturated { column, share, value } => write!(
                 f,
                 "`{column}` stands at {value:.6} in {:.1} % of the samples: saturated?",
                 100.0 * share
             ),
             Self::Steps { columns } => write_steps(f, columns),
-            Self::CommandedTorque { joint } => {
-                write!(f, "`{joint}`: the commanded torque stands for the measured one")
-            }
             Self::MotorTorques { joints } => {
                 write!(f, "torques of motors, multiplied by the gear ratios: {}", joints.join(", "))
             }
-            Self::LoweredFilter { cutoff_hz } => write!(
-                f,
-                "noise of positions would bias parameters or residuals: filtered below {} Hz \
-                 (`conditions.filter` sets another)",
-                short(*cutoff_hz)
-            ),
             Self::NoSuchLink { link } => {
                 write!(f, "wrenches on `{link}`, which is no link of the model: left out")
-            }
-            Self::Averaged { laps, period_s } => {
-                write!(f, "{laps} laps of {period_s:.6} s are replaced by their mean")
             }
             Self::SameAs { other } => {
                 write!(f, "says the same as {other}, all of it or a part: it validates nothing")
             }
+            Self::Other(text) => write!(f, "{text}"),
             Self::Accepted(suspicion) => {
                 let text = suspicion.to_string();
                 write!(f, "accepted: {}", text.lines().next().unwrap_or_default())

@@ -11,7 +11,6 @@ mod check;
 mod fault;
 mod jumps;
 mod mapping;
-mod mapping_fault;
 mod repair;
 mod wanted;
 
@@ -19,7 +18,6 @@ use crate::error::Error;
 use crate::policy::log::{LARGEST, LARGEST_TIME};
 pub use fault::{LogFault, LogFaults, LogRemark, Suspicion};
 pub use mapping::{ColumnMapping, ColumnSource};
-pub(crate) use mapping_fault::MappingCause;
 
 pub use denavit_logs::{FileFault, FileRemark, Place};
 
@@ -209,7 +207,7 @@ pub fn read_opened(
         return Err(failed(impossible));
     }
     if table.rows() == 0 {
-        return Err(failed(vec![LogFault::TooShort { rows: 0 }]));
+        return Err(failed(vec![repair::too_short(0)]));
     }
     let names: Vec<String> = wanted.columns.iter().map(|column| column.name.clone()).collect();
     let jumps = wanted.jumps(&table);

@@ -5,7 +5,7 @@ use crate::policy::repair::{MAX_JITTER, MAX_MISSING, RESAMPLED_JITTER};
 use denavit_logs::Table;
 
 /// Fewer rows make no log.
-pub(super) const FEWEST_ROWS: usize = 4;
+const FEWEST_ROWS: usize = 4;
 
 /// Samples that may be missing at once.
 const MAX_GAP: usize = 5;
@@ -33,7 +33,7 @@ pub(super) fn even(mut table: Table, names: &[String]) -> Result<Even, Vec<LogFa
     }
     drop_repeats(&mut table, &mut faults, &mut remarks);
     if table.rows() < FEWEST_ROWS {
-        faults.push(LogFault::TooShort { rows: table.rows() });
+        faults.push(too_short(table.rows()));
     }
     if !faults.is_empty() {
         return Err(faults);
@@ -55,7 +55,10 @@ pub(super) fn even(mut table: Table, names: &[String]) -> Result<Even, Vec<LogFa
         let Gaps { missing, longest, row } = gaps;
         faults.push(LogFault::Gaps { missing, samples, longest, at: table.place(row + 1) });
     } else if jitter > MAX_JITTER {
-        faults.push(LogFault::Jitter { relative: jitter });
+        let percent = 100.0 * jitter;
+        faults.push(LogFault::other(format!(
+            "the distances of samples scatter by {percent:.0} %, too much for derivatives"
+        )));
     }
     if !faults.is_empty() {
         return Err(faults);
@@ -78,6 +81,12 @@ pub(super) fn even(mut table: Table, names: &[String]) -> Result<Even, Vec<LogFa
         }
     }
     Ok(Even { step_s, start_s, columns, remarks })
+}
+
+/// So many rows make no log.
+pub(super) fn too_short(rows: usize) -> LogFault {
+    let rows = if rows == 0 { "no rows".to_owned() } else { format!("{rows} rows") };
+    LogFault::other(format!("{rows}: at least {FEWEST_ROWS} are needed"))
 }
 
 #[derive(Default)]
@@ -118,7 +127,8 @@ fn drop_repeats(table: &mut Table, faults: &mut Vec<LogFault>, remarks: &mut Vec
         if table.columns.iter().all(same) {
             keep[row] = false;
         } else if time[row] == time[row - 1] {
-            faults.push(LogFault::TimeRepeated { at: table.place(row) });
+            let text = "the time is that of the row above, with other numbers".to_owned();
+            faults.push(LogFault::Other { text, at: Some(table.place(row)) });
         } else {
             faults.push(LogFault::TimeNotIncreasing { at: table.place(row) });
         }

@@ -196,7 +196,12 @@ impl Wanted {
                     columns.push(WantedColumn { name, place, scale, offset, goes_to });
                 }
                 Found::Several(several) => {
-                    faults.push(LogFault::Ambiguous { column: name, several });
+                    let several: Vec<String> =
+                        several.iter().map(|one| format!("`{one}`")).collect();
+                    faults.push(LogFault::other(format!(
+                        "`{name}` may be {}\n  hint: `logs.columns` says which it is",
+                        several.join(" or ")
+                    )));
                 }
                 Found::Nowhere if is_needed || is_mapped => {
                     let nearest = meant(log, &source.column);
@@ -292,8 +297,9 @@ impl Wanted {
                 own.motor_torque = command;
             } else if own.tau.is_none() && command.is_some() {
                 own.tau = command;
-                let joint = joint.name.clone();
-                log.remarks.push(LogRemark::CommandedTorque { joint });
+                let name = &joint.name;
+                let text = format!("`{name}`: the commanded torque stands for the measured one");
+                log.remarks.push(LogRemark::Other(text));
             }
         }
         if !geared.is_empty() {
@@ -386,7 +392,10 @@ fn torque_side(log: &Log<'_>) -> Result<Option<TorqueSide>, LogFault> {
         None => Ok(None),
         Some("joint") => Ok(Some(TorqueSide::Joint)),
         Some("motor") => Ok(Some(TorqueSide::Motor)),
-        Some(found) => Err(LogFault::TorqueSide { found: found.to_owned() }),
+        Some(found) => Err(LogFault::other(format!(
+            "`# torque_side: {found}`: there are `joint` and `motor`\n  hint: write where the \
+             torques were measured"
+        ))),
     }
 }
 
@@ -416,7 +425,10 @@ fn other_robot(log: &Log<'_>, robot: LogOf<'_>, columns: &[WantedColumn]) -> Vec
         }
     }
     if !others.is_empty() && (are_messages || others.len() * 2 > robot.joints.len()) {
-        faults.push(LogFault::OtherJoints { joints: others });
+        faults.push(LogFault::other(format!(
+            "has joints that the model does not have: {}\n  hint: is it a log of this robot?",
+            others.join(", ")
+        )));
     }
     faults
 }

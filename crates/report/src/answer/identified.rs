@@ -3,7 +3,7 @@
 use crate::identification::{notes, warnings};
 use crate::{Align, Table, paragraph, short};
 use denavit_identify::estimate::{IdentifiedParameter, JointResidual, Status};
-use denavit_identify::forward::Forward;
+use denavit_replay::Forward;
 use denavit_workflow::{Identified, SimulationGap};
 use std::fmt::{self, Write};
 

@@ -2,8 +2,8 @@
 
 use crate::identification::warnings;
 use denavit_identify::estimate::{Consistent, IdentifiedParameter, JointResidual, Status};
-use denavit_identify::forward::{Compared, Forward, ForwardJoint, ForwardKind};
 use denavit_plants::regression::{RegressionModel, StandardParameter};
+use denavit_replay::{Compared, Forward, ForwardJoint, ForwardKind};
 use denavit_workflow::{EffectUse, Identified, SimulationGap};
 use serde::Serialize;
 

@@ -3,7 +3,7 @@
 use crate::html::{Chart, ChartCurve, Look, Panel, Part, Section};
 use crate::percent;
 use denavit_identify::estimate::{Convergence, IdentifiedParameter, JointResidual, Validation};
-use denavit_identify::forward::{Compared, Forward};
+use denavit_replay::{Compared, Forward};
 
 /// Heights of panels [px].
 const TALL: u32 = 190;

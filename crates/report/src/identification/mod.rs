@@ -16,10 +16,11 @@ use super::html::{
 use super::short;
 use curves::{condition, convergence};
 use denavit_codegen::model::Robot;
+use denavit_identify::Identification;
 use denavit_identify::estimate::{Status, Validation};
-use denavit_identify::forward::Forward;
-use denavit_identify::{Identification, UpdatedModel};
+use denavit_plants::UpdatedModel;
 use denavit_plants::regression::RegressionModel;
+use denavit_replay::Forward;
 use parameters::{bodies, not_excited};
 
 /// What a page about an identification says.

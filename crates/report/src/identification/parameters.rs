@@ -5,8 +5,8 @@ use super::shown_by::motions;
 use crate::html::{Cell, FormulaError, HtmlTable, Part, Row, Section};
 use crate::{Values, short};
 use denavit_codegen::model::Robot;
-use denavit_identify::UpdatedModel;
 use denavit_identify::estimate::{IdentifiedParameter, Status};
+use denavit_plants::UpdatedModel;
 use denavit_plants::regression::RegressionModel;
 
 /// The base parameters.

@@ -5,7 +5,7 @@ use super::{SimulationPart, headings, share};
 use crate::html::{Cell, HtmlTable, Part, Row, SceneMark, Section};
 use crate::jointed::{JointMotion, JointedRobot};
 use denavit_codegen::model::Robot;
-use denavit_identify::forward::{Compared, Forward, ForwardJoint};
+use denavit_replay::{Compared, Forward, ForwardJoint};
 
 impl SimulationPart<'_> {
     pub(super) fn section(&self, robot: &Robot) -> Section {

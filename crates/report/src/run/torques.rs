@@ -5,7 +5,7 @@ use super::super::svg::Svg;
 use super::axes::{Axes, Scale, TICK};
 use super::{APART, BLUE, GREY, HEADING, SCALE, SIDE, TORQUE, WANTED, WIDTH, draw_legend};
 use denavit_identify::estimate::Validation;
-use denavit_identify::forward::{Compared, Forward};
+use denavit_replay::{Compared, Forward};
 
 /// What a picture of torques is about.
 #[derive(Clone, Copy, Debug)]

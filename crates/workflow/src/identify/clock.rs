@@ -27,11 +27,21 @@ impl Clock {
         let off_last = off_first + last as f64 * (log.step_s / self.step_s - 1.0);
         let off = if off_last.abs() > off_first.abs() { off_last } else { off_first };
         (log.start_s, log.step_s) = (start_s, self.step_s);
-        let of_clock = (off.abs() > MOST_OFF).then_some(LogFault::OffClock { steps: off.abs() });
+        let of_clock = (off.abs() > MOST_OFF).then(|| {
+            LogFault::other(format!(
+                "samples are {:.1} steps from where equal distances of time have them\n  hint: a \
+                 log that is read piece by piece has all of its samples: cut it where some are \
+                 missing, or resample it",
+                off.abs()
+            ))
+        });
         let of_remark = |remark: LogRemark| match remark {
             LogRemark::DroppedRepeats { .. }
             | LogRemark::FilledGaps { .. }
-            | LogRemark::Resampled { .. } => Some(LogFault::Repaired { how: Box::new(remark) }),
+            | LogRemark::Resampled { .. } => Some(LogFault::other(format!(
+                "{remark}: a log that is read piece by piece is not repaired\n  hint: cut it \
+                 before and behind these rows, or resample it"
+            ))),
             LogRemark::Accepted(one) if !self.accepts_suspicious && one.is_of_samples() => {
                 Some(LogFault::Suspicion(one))
             }

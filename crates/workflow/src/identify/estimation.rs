@@ -6,11 +6,12 @@ use super::logs::{self, Read};
 use crate::error::{Cause, Error};
 use crate::observer::{Reading, Stage, Watched};
 use denavit_codegen::effect::{self, Effect};
-use denavit_identify::estimate::{IdentifiedParameter, Method, Options};
-use denavit_identify::{
-    Estimated, Identification, Request, UpdatedModel, estimated, updated_model,
-};
+use denavit_codegen::model::Robot;
+use denavit_identify::estimate::{Consistent, IdentifiedParameter, Method, Options};
+use denavit_identify::{Estimated, Identification, Request, estimated};
 use denavit_measure::condition::Conditioned;
+use denavit_plants::regression::RegressionModel;
+use denavit_plants::{FoundValues, UpdatedModel, updated_model};
 
 /// What estimates of one run have in common.
 #[derive(Clone, Copy)]
@@ -21,7 +22,7 @@ pub(super) struct Estimation<'a> {
 }
 
 /// What is found, and the model with it.
-pub(super) type Found = (Identification, Result<UpdatedModel, denavit_identify::Error>);
+pub(super) type Found = (Identification, Result<UpdatedModel, denavit_plants::Error>);
 
 impl Estimation<'_> {
     /// All logs, for the first time.
@@ -70,10 +71,10 @@ impl Estimation<'_> {
     pub(super) fn updated(
         &self,
         found: &Identification,
-    ) -> Result<UpdatedModel, denavit_identify::Error> {
+    ) -> Result<UpdatedModel, denavit_plants::Error> {
         let Work { robot, model, .. } = self.work;
         let (bodies, listed) = (&found.consistent, &found.parameters);
-        let updated = updated_model(robot, model, bodies, listed, self.source);
+        let updated = updated(robot, model, bodies, listed, self.source);
         updated.and_then(|updated| with_all_effects(updated, self.own))
     }
 
@@ -176,11 +177,25 @@ fn growth_of_errors(parameters: &[IdentifiedParameter], others: &[IdentifiedPara
     parameters.iter().zip(others).map(ratio).sum::<f64>() / parameters.len().max(1) as f64
 }
 
+/// The model with the bodies nearest to what was found, and errors of what stands alone.
+pub(super) fn updated(
+    robot: &Robot,
+    model: &RegressionModel,
+    bodies: &Consistent,
+    listed: &[IdentifiedParameter],
+    source: &str,
+) -> Result<UpdatedModel, denavit_plants::Error> {
+    let estimate = |one: &IdentifiedParameter| one.std.map(|std| [one.value, std]);
+    let estimates: Vec<Option<[f64; 2]>> = listed.iter().map(estimate).collect();
+    let Consistent { standard, own, .. } = bodies;
+    updated_model(robot, model, FoundValues { standard, own, estimates: &estimates }, source)
+}
+
 /// The identified model with all of its effects: what is simulated.
 fn with_all_effects(
     updated: UpdatedModel,
     own: &[Effect],
-) -> Result<UpdatedModel, denavit_identify::Error> {
+) -> Result<UpdatedModel, denavit_plants::Error> {
     let UpdatedModel { text, errors, .. } = updated;
     let robot = effect::read_model("the identified model", text.as_bytes(), own)?;
     Ok(UpdatedModel { text, robot, errors })

@@ -7,13 +7,12 @@ use crate::files::Files;
 use crate::mistaken::FileKind;
 use crate::observer::{Stage, Watched};
 use denavit_codegen::model::Robot;
-use denavit_identify::forward::{
-    Forward, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
-};
-use denavit_identify::{ErrorKind, UpdatedModel};
 use denavit_measure::condition::Conditioned;
 use denavit_numerics::short;
-use denavit_plants::{plant_of, shipped};
+use denavit_plants::{UpdatedModel, plant_of, shipped};
+use denavit_replay::{
+    ErrorKind, Forward, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
+};
 use denavit_simulate::scenario::{Controller, read_controller};
 use std::fmt;
 use std::path::Path;
@@ -61,7 +60,7 @@ impl Controlled {
         let names: Vec<String> =
             plant.model().joints.iter().map(|joint| joint.name.clone()).collect();
         let mut one = |log: &MotionLog| {
-            let failed = |error| Cause::Identify(log.file.clone(), error);
+            let failed = |error| Cause::Replay(log.file.clone(), error);
             let believed = Some(believed.as_mut());
             let simulated = simulated_log(plant.as_mut(), believed, &self.controller, log);
             let simulated = simulated.map_err(failed)?;
@@ -77,11 +76,11 @@ impl Controlled {
 #[derive(Clone, Debug)]
 pub enum NotMoved {
     /// What was found makes no model.
-    Update(denavit_identify::Error),
+    Update(denavit_plants::Error),
     /// A model has no plant.
     Plant(denavit_plants::Error),
     /// A log cannot be simulated; holds its file.
-    Forward(String, denavit_identify::Error),
+    Forward(String, denavit_replay::Error),
     /// The observer stopped the work before.
     Stopped,
 }
@@ -119,7 +118,7 @@ impl Again<'_> {
     pub(super) fn gap(
         self,
         robot: &Robot,
-        updated: &Result<UpdatedModel, denavit_identify::Error>,
+        updated: &Result<UpdatedModel, denavit_plants::Error>,
         watched: &mut Watched<'_>,
     ) -> SimulationGap {
         let before =
@@ -171,7 +170,7 @@ impl SimulationGap {
     pub(super) fn check(&self) -> Result<(), Error> {
         match &self.after {
             Err(NotMoved::Forward(file, error)) if error.kind() != ErrorKind::BrokeOff => {
-                Err(Cause::Identify(file.clone(), error.clone()).into())
+                Err(Cause::Replay(file.clone(), error.clone()).into())
             }
             Ok(_) | Err(NotMoved::Forward(..)) => Ok(()),
             Err(NotMoved::Plant(_) | NotMoved::Update(_) | NotMoved::Stopped) => Ok(()),

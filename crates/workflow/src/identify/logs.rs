@@ -6,14 +6,14 @@ use crate::error::{Cause, Error};
 use crate::logs::LogSource;
 use crate::observer::Reading;
 use denavit_identify::estimate::Method;
-use denavit_identify::forward::{LONGEST_S, MotionLog};
-use denavit_identify::{leave_out_idle_motors, take_out, undo_logged_torques, undo_readings};
+use denavit_identify::leave_out_idle_motors;
 use denavit_measure::ErrorKind;
-use denavit_measure::Ground;
 use denavit_measure::condition::{Conditioned, Conditioning, Filter, Stretch};
 use denavit_measure::log::{LogFault, LogFaults, LogRemark, MeasuredLog};
 use denavit_measure::{JointIndex, Split};
+use denavit_numerics::short;
 use denavit_plants::regression::CoulombLaw;
+use denavit_replay::{Ground, LONGEST_S, MotionLog, take_out, undo_logged_torques, undo_readings};
 
 /// All logs of a run.
 pub(super) struct Read {
@@ -189,7 +189,12 @@ impl<'a, 'r, 'w, 'o> Reader<'a, 'r, 'w, 'o> {
             ..conditions.of(log.step_s, log.samples(), halvings)
         };
         if let (Some(Filter { cutoff_hz, .. }), 1..) = (how.filter, halvings) {
-            self.remarks.push((file.clone(), LogRemark::LoweredFilter { cutoff_hz }));
+            let text = format!(
+                "noise of positions would bias parameters or residuals: filtered below {} Hz \
+                 (`conditions.filter` sets another)",
+                short(cutoff_hz)
+            );
+            self.remarks.push((file.clone(), LogRemark::Other(text)));
         }
         if let (Some(motions), Some(longest_s)) = (&mut self.motions, longest_s) {
             let head = log.head((longest_s / log.step_s).min(1e15) as usize + 1);
@@ -207,8 +212,12 @@ impl<'a, 'r, 'w, 'o> Reader<'a, 'r, 'w, 'o> {
         self.note(&file, &conditioned);
         let (conditioned, idle) = self.without_known(conditioned);
         for joint in idle {
-            self.remarks
-                .push((file.clone(), LogRemark::Idle { joint: self.names[joint.0].clone() }));
+            let text = format!(
+                "`{}` rests, and its torque does not follow the load that the motion of the others \
+                 makes: a brake holds it, or stiction. Its torque was left out",
+                self.names[joint.0]
+            );
+            self.remarks.push((file.clone(), LogRemark::Other(text)));
         }
         Ok(conditioned)
     }
@@ -294,8 +303,8 @@ impl<'a, 'r, 'w, 'o> Reader<'a, 'r, 'w, 'o> {
         }
         if let Some(laps) = &log.laps {
             let period_s = laps.samples as f64 * log.step_s;
-            let remark = LogRemark::Averaged { laps: laps.count, period_s };
-            self.remarks.push((file.to_owned(), remark));
+            let text = format!("{} laps of {period_s:.6} s are replaced by their mean", laps.count);
+            self.remarks.push((file.to_owned(), LogRemark::Other(text)));
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Springs and motors first, then the load (thesis 3.3.2).
 
+use super::estimation::updated;
 use super::loads::conditioned;
 use super::{IdentifyOptions, regression};
 use crate::error::{Cause, Error};
@@ -13,7 +14,6 @@ use denavit_identify::estimate::{
     Consistent, IdentifiedParameter, JointResidual, Validation, consistent, parameters, validate,
 };
 use denavit_identify::two_stage::{Estimate, TwoStage, TwoStageOptions, two_stage};
-use denavit_identify::updated_model;
 use denavit_measure::condition::{Conditioning, Filter};
 use denavit_measure::log::{LogRemark, MeasuredLog};
 use denavit_numerics::short;
@@ -159,7 +159,7 @@ impl TwoStageFound {
     pub fn updated(&self) -> Result<String, Error> {
         let Self { robot, model, source, .. } = self;
         let (bodies, listed) = (&self.bodies, &self.parameters);
-        let updated = updated_model(robot, model, bodies, listed, source).map_err(Cause::Update)?;
+        let updated = updated(robot, model, bodies, listed, source).map_err(Cause::Update)?;
         let mut named = Vec::new();
         for spring in &self.stages.springs {
             let values = [("k", spring.stiffness), ("fv", spring.viscous), ("fc", spring.coulomb)];
@@ -185,7 +185,7 @@ impl TwoStageFound {
             })
             .collect();
         let text = with_values(&updated.text, &new)
-            .ok_or_else(|| Cause::Update(denavit_identify::Error::no_place(&robot.name)))?;
+            .ok_or_else(|| Cause::Update(denavit_plants::Error::no_place(&robot.name)))?;
         model::read("the identified model", text.as_bytes()).map_err(Cause::Model)?;
         Ok(text)
     }

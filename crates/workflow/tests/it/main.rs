@@ -1,6 +1,7 @@
 //! Use cases as their callers see them: what observers stop, what errors say.
 
 mod errors;
+mod filters;
 mod observers;
 mod runs;
 mod updates;

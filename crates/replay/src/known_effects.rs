@@ -6,7 +6,7 @@
 //! filter of the torques, as laws that jump need, and is subtracted. Loads are those of the values
 //! that the model gives.
 
-use super::forward::{DriveMotion, MotionLog};
+use super::{DriveMotion, MotionLog};
 use denavit_codegen::effect::{Channel, EffectSite, SpringSide};
 use denavit_measure::condition::{Butterworth, Conditioned, STENCIL};
 use denavit_measure::log::MeasuredLog;

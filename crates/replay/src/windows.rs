@@ -3,11 +3,11 @@
 //! Where the motors before springs were measured, windows begin with their angles and rates as well
 //! and the torques are those of the motors: springs pass on what the model makes of them.
 
+use super::error::Error;
 use super::{
     ACCURACY, Compared, Forward, ForwardJoint, ForwardKind, MotionLog, broken_off, column, names,
     rms, simulation, too_short,
 };
-use crate::error::{Error, ErrorKind};
 use denavit_measure::SampleIndex;
 use denavit_plants::Plant;
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference};
@@ -103,7 +103,7 @@ fn given(plant: &dyn Plant, log: &MotionLog) -> Result<Control, Error> {
                  without",
                 joint.name
             );
-            Error::new(ErrorKind::MissingColumn, text).of_column(format!("tau_{}", joint.name))
+            Error::missing(format!("tau_{}", joint.name), text)
         };
         let torque = log.torque[index].as_ref().ok_or_else(missing)?;
         let torque = torque[log.range.clone()].to_vec();

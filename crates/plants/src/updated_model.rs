@@ -1,10 +1,9 @@
 //! The model with the identified values, as text that every command reads and as a robot.
 
 use super::error::Error;
-use super::estimate::{Consistent, IdentifiedParameter};
+use super::model_text::{NewValue, with_values};
+use super::regression::{ModelParameter, RegressionModel, RegressionParameter};
 use denavit_codegen::model::{self, About, BodyEntry, Robot, Role};
-use denavit_plants::model_text::{NewValue, with_values};
-use denavit_plants::regression::{ModelParameter, RegressionModel};
 use std::collections::BTreeMap;
 
 /// A model with new values.
@@ -19,36 +18,47 @@ pub struct UpdatedModel {
     pub errors: BTreeMap<String, f64>,
 }
 
-/// Writes the bodies nearest to an estimate into a model's file, `source`, and reads it again.
-/// Parameters that stand alone get their standard error, if `listed` has it and the file means the
-/// same by them: a moment of inertia about the centre of mass is not the one about the origin of
-/// the link that was estimated.
+/// Values that were found of a model.
+#[derive(Clone, Copy, Debug)]
+pub struct FoundValues<'a> {
+    /// theta0, in the order of [`RegressionModel::standard`].
+    pub standard: &'a [f64],
+    /// Of the model's own numbers, where columns are products of them: their places in
+    /// [`RegressionModel::parameters`].
+    pub own: &'a [(usize, f64)],
+    /// Of each listed parameter the estimate with its standard error; none where it has none.
+    pub estimates: &'a [Option<[f64; 2]>],
+}
+
+/// Writes values that were found into a model's file, `source`, and reads it again. Parameters that
+/// stand alone get their standard error, if they have one and the file means the same by them: a
+/// moment of inertia about the centre of mass is not the one about the origin of the link that was
+/// estimated.
+///
+/// # Errors
+/// The file has no place for values, or they make no model.
 pub fn updated_model(
     robot: &Robot,
     model: &RegressionModel,
-    found: &Consistent,
-    listed: &[IdentifiedParameter],
+    found: FoundValues<'_>,
     source: &str,
 ) -> Result<UpdatedModel, Error> {
     let is_about_com = |link: &str| {
         let body = robot.find_link(link).and_then(|link| robot.links[link].body);
         body.is_some_and(|body| body.about == About::Com)
     };
-    let values = model.file_values(&found.standard, &found.own, &is_about_com);
+    let values = model.file_values(found.standard, found.own, &is_about_com);
     let estimate_of = |parameter: &ModelParameter| {
         if is_moved(parameter, &is_about_com) {
             return None;
         }
-        let is_it = |one: &denavit_plants::regression::RegressionParameter| {
-            one.is_alone && one.name == parameter.name
-        };
+        let is_it = |one: &RegressionParameter| one.is_alone && one.name == parameter.name;
         let place = model.listed.iter().position(is_it)?;
-        let own = &listed[place];
-        own.std.filter(|std| *std > 0.0 && std.is_finite()).map(|std| (own.value, std))
+        found.estimates[place].filter(|[_, std]| *std > 0.0 && std.is_finite())
     };
     // a deviation is that of the estimate: what was moved further to exist has none
     let std_of = |parameter: &ModelParameter, value: f64| {
-        let (estimate, std) = estimate_of(parameter)?;
+        let [estimate, std] = estimate_of(parameter)?;
         ((value - estimate).abs() <= std).then_some(std)
     };
     let effects = model.file_values_with_effect(&values);

@@ -4,11 +4,14 @@
 //! D qdd + C qd + G = tau + W lambda: the right side is what is regressed. The virtual joints of a
 //! floating base have no torque of their own, so their rows are the wrench that contacts put on it.
 
-use crate::log::{LogRemark, MeasuredLog};
-use crate::policy::contact_forces::DIFFERENCE;
 use denavit_codegen::model::Robot;
+use denavit_measure::log::{LogRemark, MeasuredLog};
 use denavit_plants::regression::RegressionModel;
 use denavit_plants::{Plant, plant_of};
+
+/// Half the distance of differences [rad, m]: of order 4, so that rounding and the rest of
+/// the Taylor series are both about 1e-13.
+const DIFFERENCE: f64 = 1e-3;
 
 /// The ground under a robot on a floating base, as its logs know it.
 pub struct Ground {

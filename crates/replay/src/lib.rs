@@ -1,19 +1,30 @@
-//! Forward comparison: a model moves by itself, and its motion is held against a log.
+//! A model held against a log: it moves by itself, and what it knows beside its equations is taken
+//! out of what was measured.
 //!
+//! - [`MotionLog`]: a log as a simulation is compared with it
 //! - [`closed_loop`]: under the controller that the robot had
 //! - [`in_windows`]: driven by the measured torques, for short times from measured states: without
 //!   a controller a motion that is simulated runs away from the one that was measured
 //! - [`simulated_log`]: the log that a model would have given, to be used as instruments
+//! - [`take_out`], [`undo_readings`], [`undo_logged_torques`]: effects that a model has beside its
+//!   equations, taken out of logs
+//! - [`add_contact_forces`], [`add_wrenches`]: what the ground, and pushes, do to each equation
+//! - [`Error`]: why a model is not moved along a log
 //!
 //! Robots on a fixed base alone: what the ground does to others is not known from their logs.
 
 mod closed_loop;
+mod contact_forces;
+mod error;
+mod known_effects;
 mod windows;
 
 pub use closed_loop::{closed_loop, simulated_log};
+pub use contact_forces::{Ground, add_contact_forces, add_wrenches};
+pub use error::{Error, ErrorKind};
+pub use known_effects::{take_out, undo_logged_torques, undo_readings};
 pub use windows::{Windows, in_windows};
 
-use crate::error::{Error, ErrorKind};
 use denavit_measure::SampleIndex;
 use denavit_measure::condition::{Butterworth, Conditioned, Conditioning, Filter};
 use denavit_measure::log::{JointSignals, MeasuredLog};

@@ -1,10 +1,10 @@
 //! The whole log again, under the controller that the robot had.
 
+use super::error::{Error, ErrorKind};
 use super::{
     Compared, Controller, Forward, ForwardJoint, ForwardKind, LONGEST_S, MotionLog, broken_off,
     column, names, rms, simulation, too_short,
 };
-use crate::error::{Error, ErrorKind};
 use denavit_measure::SampleIndex;
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_plants::Plant;
@@ -128,7 +128,7 @@ fn following(
                 "`{joint}` is controlled and follows nothing\n  hint: give it a `reference`, or \
                  the log a column `{column}`"
             );
-            Error::new(ErrorKind::MissingColumn, text).of_column(column)
+            Error::missing(column, text)
         };
         let logged = log.reference[index].clone().ok_or_else(missing)?;
         let times = (0..logged.len()).map(|sample| log.time_s(SampleIndex(sample))).collect();

@@ -1,19 +1,23 @@
 //! The model in motion against a log: closed forms, and logs of our own simulation.
 
-use super::robot;
+use denavit_codegen::model::{self, Robot};
 use denavit_codegen::regressor::functions::modelled;
-use denavit_identify::ErrorKind;
-use denavit_identify::forward::{
-    Forward, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
-};
 use denavit_measure::condition::Filter;
 use denavit_measure::log::{ColumnMapping, JointSignals, LogOf, MeasuredLog, read_log};
 use denavit_plants::regression::RegressionModel;
 use denavit_plants::shipped;
 use denavit_plants::{Override, Plant, plant_of};
+use denavit_replay::{
+    ErrorKind, Forward, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
+};
 use denavit_simulate::scenario::{self, Controller, read_controller};
 
 const STEP_S: f64 = 1e-3;
+
+fn robot(name: &str) -> Robot {
+    let shipped = shipped::find(name).expect("a shipped model");
+    model::read(name, shipped.text.as_bytes()).expect("shipped models are sound")
+}
 
 fn load(name: &str) -> Result<Vec<u8>, String> {
     let found = shipped::find_referred(name).ok_or("no such file")?;
@@ -163,7 +167,7 @@ fn references_are_those_of_the_log_where_a_controller_has_none() {
     let refused = closed_loop(own.as_mut(), None, &follows, &motion(&silent, None));
     let error = refused.expect_err("nothing to follow");
     assert_eq!(error.kind(), ErrorKind::MissingColumn);
-    assert_eq!(error.column().as_deref(), Some("ref_hip_y"));
+    assert_eq!(error.column(), Some("ref_hip_y"));
 }
 
 #[test]
@@ -179,7 +183,7 @@ fn what_cannot_be_simulated_again_is_refused() {
     let refused = in_windows(own.as_mut(), &motion(&untold, None), Windows::default());
     let untold = refused.expect_err("no torque");
     assert_eq!(untold.kind(), ErrorKind::MissingColumn);
-    assert_eq!(untold.column().as_deref(), Some("tau_carriage"));
+    assert_eq!(untold.column(), Some("tau_carriage"));
     let mut walker = plant("planar_biped", &[]);
     let n = walker.model().joints.len();
     let mut log = pushed(95.0, 200.0, 20.0);

@@ -1,7 +1,7 @@
-//! A drive whose transmission gives way, where the torque is the drive's and the position the
-//! joint's.
+//! A drive whose transmission gives way, where the torque is the drive's, and the position the
+//! joint's or the drive's.
 
-use super::one_joint::{diagnosed, log};
+use super::one_joint::{STEP_S, diagnosed, log};
 use std::f64::consts::TAU;
 
 const ROTOR: f64 = 0.5;
@@ -55,4 +55,81 @@ fn a_soft_transmission_is_found_by_the_motion_of_its_rotor() {
     let swing = (ROTOR / STIFFNESS).sqrt();
     let value = one.parameters[0].value;
     assert!((value / swing - 1.0).abs() < 0.05, "{value} is not {swing}");
+}
+
+/// Mass 2 kg at 0.3 m with 0.05 kg m^2 about its centre.
+const INERTIA: f64 = 0.05 + 2.0 * 0.09;
+const WEIGHT: f64 = 2.0 * 0.3 * 9.81;
+/// The play \[rad\], and what is between the sides [N m/rad, N m s/rad]: under its weight the rod
+/// is as far beyond the gap as that is wide.
+const GAP: f64 = 0.01;
+const SIDES: f64 = 575.0;
+const GREASE: f64 = 1.84;
+
+const PENDULUM: &str = r#"{
+  "format": "denavit-model/1", "name": "pendulum", "convention": "standard",
+  "gravity": [0, -9.81, 0],
+  "links": [{
+    "name": "rod", "joint": {"type": "revolute", "theta": 0, "d": 0, "a": 0.5, "alpha": 0},
+    "body": {"mass": {"value": 2, "std": 0.02}, "com": [-0.2, 0, 0], "about": "com",
+             "inertia": {"xx": 0.001, "yy": 0.05, "zz": {"value": 0.05, "std": 0.002},
+                         "xy": 0, "xz": 0, "yz": 0}}
+  }],
+  "drives": {"rod": {"rotor_inertia": {"value": 0.5, "std": 0.005},
+                     "viscous": {"value": 1.5, "std": 0.05},
+                     "coulomb": {"value": 1, "std": 0.03}}}
+}"#;
+
+/// Angle and velocity of a drive, and what its rotor and the sides take, sample by sample: the
+/// hanging rod goes through the gap by small steps of time.
+fn hung(phase: f64) -> impl Fn(f64) -> [f64; 3] {
+    const WITHIN: u32 = 400;
+    let h = STEP_S / f64::from(WITHIN);
+    let drive = |t: f64| {
+        let mut all = [-0.25 * TAU, 0.0, 0.0];
+        for (size, periods) in [(0.5, 2.0), (0.25, 5.0), (0.1, 9.0)] {
+            let w = TAU * periods / 5.0;
+            let (sine, cosine) = (w * t + periods * phase).sin_cos();
+            all[0] += size * sine;
+            all[1] += size * w * cosine;
+            all[2] -= size * w * w * sine;
+        }
+        all
+    };
+    let [mut q, mut qd, _] = drive(0.0);
+    let sample = |k: u32| {
+        let t = STEP_S * f64::from(k);
+        let mut passed = 0.0;
+        for step in 0..WITHIN {
+            let [motor, rate, _] = drive(t + h * f64::from(step));
+            let ahead = motor - q;
+            let beyond = ahead - ahead.clamp(-0.5 * GAP, 0.5 * GAP);
+            let torque = SIDES * beyond + GREASE * (rate - qd);
+            if step == 0 {
+                passed = torque;
+            }
+            qd += h * (torque - WEIGHT * q.cos()) / INERTIA;
+            q += h * qd;
+        }
+        let [motor, rate, acceleration] = drive(t);
+        [motor, rate, ROTOR * acceleration + passed]
+    };
+    let samples: Vec<[f64; 3]> = (0..7500).map(sample).collect();
+    move |t| samples[(t / STEP_S).round() as usize]
+}
+
+#[test]
+fn a_gap_with_soft_sides_before_the_joint_is_found_by_how_the_joint_goes_through_it() {
+    let torque = |at: [f64; 3]| at[2] + VISCOUS * at[1] + COULOMB * at[1].signum();
+    let logs = [(0.0, 1), (0.8, 2)].map(|(phase, seed)| log(&hung(phase), &torque, seed, 0.02));
+    let (found, candidates) = diagnosed(PENDULUM, logs);
+    let names = found.effects.iter().map(|one| candidates[one.candidate].name());
+    let [one] = &found.effects[..] else {
+        panic!("{:?}, not one of it: {:?}", names.collect::<Vec<_>>(), found.reasons)
+    };
+    assert_eq!(candidates[one.candidate].effect, "backlash");
+    let [gap, swing, drag] = [0, 1, 2].map(|place| one.parameters[place].value);
+    assert!((gap / GAP - 1.0).abs() < 0.1, "{gap}");
+    assert!((swing / (INERTIA / SIDES).sqrt() - 1.0).abs() < 0.1, "{swing}");
+    assert!((drag / (GREASE / INERTIA) - 1.0).abs() < 0.3, "{drag}");
 }

@@ -3,8 +3,8 @@
 //! often intervals of 95 % cover the true values.
 //! `cargo run --release --example two_stage [SEEDS]`
 
+use denavit::elastic::{Estimate, TwoStage, TwoStageOptions, two_stage};
 use denavit::identify::estimate::SlowRows;
-use denavit::identify::two_stage::{Estimate, TwoStage, TwoStageOptions, two_stage};
 use denavit::measure::condition::{Conditioning, Filter};
 use denavit::measure::log::{ColumnMapping, LogOf, MeasuredLog, read_log};
 use denavit::model;

@@ -20,7 +20,8 @@
 //!
 //! # The laboratory
 //!
-//! - [`identify`]: parameters from measured motion
+//! - [`identify`]: parameters from measured motion; [`elastic`]: springs and motors of series
+//!   elastic drives first; [`statics`]: parameters from weighings and held postures
 //! - [`diagnose`]: what a model lacks, from measurements
 //! - [`excite`]: motion that shows the parameters of a robot
 //! - [`simulate`]: robots in motion, on the ground
@@ -59,6 +60,7 @@ pub use denavit_codegen::{
     model, number, program, regressor, regroup, spatial,
 };
 pub use denavit_diagnose as diagnose;
+pub use denavit_elastic as elastic;
 pub use denavit_excite as excite;
 pub use denavit_identify as identify;
 pub use denavit_import as import;
@@ -71,6 +73,7 @@ pub use denavit_plants::{batch, shipped, trajectory};
 pub use denavit_replay as replay;
 pub use denavit_report as report;
 pub use denavit_simulate as simulate;
+pub use denavit_statics as statics;
 pub use denavit_walk as walk;
 pub use denavit_workflow as workflow;
 

@@ -20,8 +20,6 @@ pub enum ErrorKind {
     NotExcited,
     /// Measurements contradict the model: another unit, perhaps. [`Error::scale`] mends a column.
     Contradicting,
-    /// Measurements at rest are wrong; [`Error::faults`] has them one by one.
-    Measurements,
     /// Robot and logs are right, and do not suit what is asked.
     Unsuitable,
     /// An iteration does not settle.
@@ -30,16 +28,14 @@ pub enum ErrorKind {
     Piece,
 }
 
-/// What is wrong: all of it, or several faults.
+/// What is wrong.
 #[derive(Clone, Debug, PartialEq)]
 struct Reason {
     kind: ErrorKind,
     text: String,
     column: Option<String>,
     scale: Option<f64>,
-    measurement: Option<usize>,
     source: Option<denavit_measure::Error>,
-    faults: Vec<Error>,
 }
 
 impl Error {
@@ -49,29 +45,20 @@ impl Error {
         Self::new(ErrorKind::MissingColumn, text).of_column(name)
     }
 
-    pub(crate) fn new(kind: ErrorKind, text: impl Into<String>) -> Self {
-        let (column, scale, measurement) = (None, None, None);
-        let (source, faults) = (None, Vec::new());
-        let text = text.into();
-        Self(Box::new(Reason { kind, text, column, scale, measurement, source, faults }))
-    }
-
-    /// A measurement at rest, of this number from 0, is wrong.
-    pub(crate) fn of_measurement(number: usize, text: impl fmt::Display) -> Self {
-        let text = format!("measurement {}: {text}", number + 1);
-        let mut one = Self::new(ErrorKind::Measurements, text);
-        one.0.measurement = Some(number);
-        one
+    /// Of a kind, with what is printed.
+    pub fn new(kind: ErrorKind, text: impl Into<String>) -> Self {
+        let (column, scale, source) = (None, None, None);
+        Self(Box::new(Reason { kind, text: text.into(), column, scale, source }))
     }
 
     /// The same with the column that it is about.
-    pub(crate) fn of_column(mut self, column: String) -> Self {
+    pub fn of_column(mut self, column: String) -> Self {
         self.0.column = Some(column);
         self
     }
 
     /// The same with what the column is to be multiplied with.
-    pub(crate) fn mended_by(mut self, scale: Option<f64>) -> Self {
+    pub fn mended_by(mut self, scale: Option<f64>) -> Self {
         self.0.scale = scale;
         self
     }
@@ -90,16 +77,6 @@ impl Error {
     pub fn scale(&self) -> Option<f64> {
         self.0.scale
     }
-
-    /// The number of the measurement at rest that is wrong, from 0.
-    pub fn measurement(&self) -> Option<usize> {
-        self.0.faults.first().map_or(self.0.measurement, Self::measurement)
-    }
-
-    /// All that is wrong, one by one.
-    pub fn faults(&self) -> Vec<Self> {
-        if self.0.faults.is_empty() { vec![self.clone()] } else { self.0.faults.clone() }
-    }
 }
 
 impl fmt::Display for Error {
@@ -111,16 +88,6 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         self.0.source.as_ref().map(|error| error as _)
-    }
-}
-
-/// All that is wrong with measurements at rest.
-impl From<Vec<Error>> for Error {
-    fn from(faults: Vec<Error>) -> Self {
-        let texts: Vec<&str> = faults.iter().map(|one| one.0.text.as_str()).collect();
-        let mut all = Self::new(ErrorKind::Measurements, texts.join("\n"));
-        all.0.faults = faults;
-        all
     }
 }
 

@@ -3,9 +3,7 @@
 //! - [`leave_out_idle_motors`]: torques of joints that a brake holds
 //! - [`estimate`]: base parameters with their errors, and what they leave unexplained
 //! - [`doubt`]: what logs may be other than they are taken for
-//! - [`two_stage`]: springs and motors of series elastic drives first, then the load
 //! - [`identify`]: all of it at once
-//! - [`statics`]: what weighings and held postures say
 //! - [`Error`]: why there is no answer, of all of these
 
 pub mod doubt;
@@ -17,8 +15,6 @@ mod long;
 mod noisy_logs;
 mod odd_log;
 mod policy;
-pub mod statics;
-pub mod two_stage;
 
 pub use error::{Error, ErrorKind};
 pub use identification::{Estimated, Identification, LeftOutRows, Request, estimated, identify};

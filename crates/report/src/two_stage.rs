@@ -5,8 +5,8 @@ use super::identification::{
     base_parameters, headings, nearest_bodies, percent, remarks, residuals, torques,
 };
 use super::short;
+use denavit_elastic::{Estimate, Spring};
 use denavit_identify::estimate::{IdentifiedParameter, Validation};
-use denavit_identify::two_stage::{Estimate, Spring};
 
 /// What a page about an identification in two stages says.
 #[derive(Clone, Copy, Debug)]

@@ -126,7 +126,7 @@ pub(crate) enum Cause {
     /// Two stages need one log.
     OneLog,
     /// Measurements at rest do not fit the model; holds their file.
-    Statics(String, denavit_identify::Error),
+    Statics(String, denavit_statics::Error),
     /// Instrumental variables without instruments, and nothing to simulate them with.
     NoInstruments,
     /// Instruments that are a log for training itself, noise and all: its name.
@@ -375,7 +375,8 @@ impl std::error::Error for Error {
             Cause::Mapping(error) => Some(error),
             Cause::Condition(_, error) => Some(error),
             Cause::Plant(_, error) => Some(error),
-            Cause::Identify(_, error) | Cause::Statics(_, error) => Some(error),
+            Cause::Identify(_, error) => Some(error),
+            Cause::Statics(_, error) => Some(error),
             Cause::Replay(_, error) => Some(error),
             Cause::Update(error) => Some(error),
             Cause::Diagnosis(error) => Some(error),

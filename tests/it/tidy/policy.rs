@@ -47,10 +47,12 @@ fn entries(source: &str) -> Vec<Entry> {
 
 /// The packages that judge logs, and motion for them; what their numbers are of, and the fewest
 /// that a table which was read has.
-const TABLES: [(&str, &str, usize); 5] = [
+const TABLES: [(&str, &str, usize); 7] = [
     ("evidence", "Hypotheses and names", 20),
     ("diagnose", "What is reported of what was found", 20),
     ("identify", "Estimates, doubts about logs", 20),
+    ("elastic", "Springs and motors", 3),
+    ("statics", "Measurements at rest", 3),
     ("measure", "Logs and filters", 20),
     ("excite", "Motion that excites", 5),
 ];
@@ -58,7 +60,7 @@ const TABLES: [(&str, &str, usize); 5] = [
 fn page() -> String {
     let mut page = String::from(
         "# The numbers that decide\n\n\
-         Made from the tables `policy.rs` of five packages (`UPDATE_EXPECT=1 cargo test --release \
+         Made from the tables `policy.rs` of seven packages (`UPDATE_EXPECT=1 cargo test --release \
          --test it policy` writes it anew).\n",
     );
     for (package, what, fewest) in TABLES {

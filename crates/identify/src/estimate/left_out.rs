@@ -26,7 +26,7 @@ pub enum SlowRows {
 }
 
 /// Whether a share of samples near reversals biases Coulomb friction of a value and variance.
-pub(crate) fn is_biased(share: f64, friction: f64, variance: f64) -> bool {
+pub fn is_biased(share: f64, friction: f64, variance: f64) -> bool {
     friction.abs() * share > BIAS * variance.max(0.0).sqrt()
 }
 

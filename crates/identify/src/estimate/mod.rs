@@ -2,6 +2,7 @@
 //!
 //! - [`Condensed`]: logs as triangles of joints and parts
 //! - [`estimate`]: least squares, weighted, robust, by instruments, with noise on both sides
+//! - [`OneEquation`]: least squares of one equation alone
 //! - [`Errors`]: standard errors for residuals that are correlated
 //! - [`SlowRows`]: what is left out near reversals
 //! - [`validate`]: what is left of the torques
@@ -47,13 +48,13 @@ pub use half_cutoff::HalfCutoff;
 pub(crate) use held_out::HeldOut;
 pub(crate) use least_squares::long_enough;
 pub use least_squares::{Estimate, Method, Options, estimate};
-pub use left_out::SlowRows;
-pub(crate) use left_out::{biased_frictions, is_biased};
+pub(crate) use left_out::biased_frictions;
+pub use left_out::{SlowRows, is_biased};
 pub(crate) use left_over::lacking;
 pub use noise_bias::NoiseOfLog;
 pub(crate) use noise_bias::noise_of_positions;
 pub(crate) use nominal::{is_of_joints, nominal_values};
-pub(crate) use one_equation::OneEquation;
+pub use one_equation::OneEquation;
 pub use report::{Convergence, IdentifiedParameter, Status, convergence, parameters};
 pub use robust::Loss;
 pub use rows::{Block, BlockMaker};

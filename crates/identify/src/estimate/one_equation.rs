@@ -7,16 +7,19 @@ use denavit_numerics::least_squares::{Triangle, solve};
 use nalgebra::{DMatrix, DVector};
 
 /// What the columns of an equation are multiplied with.
-pub(crate) struct OneEquation {
-    pub(crate) values: DVector<f64>,
-    pub(crate) covariance: DMatrix<f64>,
+#[derive(Clone, Debug)]
+pub struct OneEquation {
+    /// The most likely ones.
+    pub values: DVector<f64>,
+    /// Their covariance.
+    pub covariance: DMatrix<f64>,
     /// Root of the mean square of what is left.
-    pub(crate) residual: f64,
+    pub residual: f64,
 }
 
 impl OneEquation {
     /// Of rows in parts of time that follow each other; none if a column depends on others.
-    pub(crate) fn of_parts(parts: Vec<Triangle>) -> Option<Self> {
+    pub fn of_parts(parts: Vec<Triangle>) -> Option<Self> {
         let rank = parts.first()?.width();
         let columns = (vec![(0..rank).collect()], rank);
         let condensed = Condensed {

@@ -8,8 +8,6 @@ mod log;
 mod misread;
 mod noise;
 mod regression;
-mod statics;
-mod two_stage;
 mod wrenches;
 
 use denavit_codegen::model::{self, Robot};

@@ -2,7 +2,7 @@
 
 use super::identified::{parameter_table, write_nearest};
 use crate::{Align, Table, percent, short};
-use denavit_identify::two_stage::Estimate;
+use denavit_elastic::Estimate;
 use denavit_workflow::TwoStageFound;
 use std::fmt::{self, Write};
 

@@ -1,7 +1,7 @@
 //! Two stages as JSON.
 
 use super::identified_json::{ConsistentJson, ParameterJson};
-use denavit_identify::two_stage::{Estimate, Spring};
+use denavit_elastic::{Estimate, Spring};
 use denavit_workflow::TwoStageFound;
 use serde::Serialize;
 

@@ -1,7 +1,7 @@
 //! Logs as the second stage sees them: with the torques on the loads, which springs measure.
 
 use crate::error::{Cause, Error};
-use denavit_identify::two_stage::Spring;
+use denavit_elastic::Spring;
 use denavit_measure::condition::{Conditioned, Conditioning};
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_plants::{JointModel, PlantModel, SeriesElasticModel};

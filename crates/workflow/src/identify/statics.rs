@@ -7,9 +7,9 @@ use crate::logs::Logs;
 use crate::observer::Observer;
 use crate::robot_file::RobotFile;
 use denavit_identify::Identification;
-use denavit_identify::statics::{add_estimate, check_units, static_knowledge};
 use denavit_numerics::{Consequences, Equations};
 use denavit_plants::regression::RegressionModel;
+use denavit_statics::{add_estimate, check_units, static_knowledge};
 
 /// What follows from measurements at rest.
 #[derive(Debug)]

@@ -2,11 +2,11 @@
 
 use denavit_codegen::expr::text::nearest;
 use denavit_codegen::model::{Fields, Node, read_document};
-use denavit_identify::statics::{HoldingTorque, StaticMeasurement};
 use denavit_plants::regression::RegressionModel;
 use denavit_simulate::scenario::{
     Cause, FieldsNumbers, NodeNumbers, Range, Report, ScenarioError, check_format,
 };
+use denavit_statics::{HoldingTorque, StaticMeasurement};
 use serde_json::json;
 use std::collections::BTreeSet;
 

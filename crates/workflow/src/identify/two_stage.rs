@@ -10,10 +10,10 @@ use crate::robot_file::RobotFile;
 use denavit_codegen::model::{self, Robot};
 use denavit_codegen::regressor::RegressorOptions;
 use denavit_codegen::regressor::functions::modelled;
+use denavit_elastic::{Estimate, TwoStage, TwoStageOptions, two_stage};
 use denavit_identify::estimate::{
     Consistent, IdentifiedParameter, JointResidual, Validation, consistent, parameters, validate,
 };
-use denavit_identify::two_stage::{Estimate, TwoStage, TwoStageOptions, two_stage};
 use denavit_measure::condition::{Conditioning, Filter};
 use denavit_measure::log::{LogRemark, MeasuredLog};
 use denavit_numerics::short;

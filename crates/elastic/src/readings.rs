@@ -2,8 +2,8 @@
 //! that of the joint times the gear ratio, its torque against the spring of the model.
 
 use super::Estimate;
-use crate::error::{Error, ErrorKind};
-use crate::policy::readings::{OTHER, SURE, TURNS, WRONG_SPRING};
+use crate::policy::{OTHER, SURE, TURNS, WRONG_SPRING};
+use denavit_identify::{Error, ErrorKind};
 use denavit_numerics::products;
 use std::f64::consts::TAU;
 

@@ -15,10 +15,11 @@
 //! loads: with d = phi(k + s) - phi(k), s the deviation of k and F0 along a column of the root of
 //! their covariance, the covariance of phi grows by d d^T.
 
+mod policy;
 mod readings;
 
-use super::error::{Error, ErrorKind};
-use super::estimate::{self, OneEquation, SlowRows, estimate};
+use denavit_identify::estimate::{self, OneEquation, SlowRows, estimate};
+use denavit_identify::{Error, ErrorKind};
 use denavit_measure::JointIndex;
 use denavit_measure::condition::{Conditioned, Conditioning};
 use denavit_measure::log::{JointSignals, MeasuredLog};

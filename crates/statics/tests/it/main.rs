@@ -1,12 +1,14 @@
 //! Static identification: weighings and held postures, joined with dynamic estimates.
 
-use super::robot;
+use denavit_codegen::model;
 use denavit_codegen::regressor::RegressorOptions;
-use denavit_identify::statics::{HoldingTorque, StaticMeasurement, add_estimate, static_knowledge};
-use denavit_identify::{Error, ErrorKind};
 use denavit_numerics::Equations;
 use denavit_numerics::Random;
 use denavit_plants::regression::RegressionModel;
+use denavit_plants::shipped;
+use denavit_statics::{
+    Error, ErrorKind, HoldingTorque, StaticMeasurement, add_estimate, static_knowledge,
+};
 use nalgebra::DMatrix;
 
 const G: f64 = 9.81;
@@ -15,7 +17,8 @@ const LENGTH: f64 = 0.5;
 const LINKS: [(f64, f64); 2] = [(2.0, 0.5 - 0.22), (1.5, 0.4 - 0.17)];
 
 fn arm() -> RegressionModel {
-    let robot = robot("planar_2r");
+    let shipped = shipped::find("planar_2r").expect("a shipped model");
+    let robot = model::read(shipped.name, shipped.text.as_bytes()).expect("sound");
     RegressionModel::new(&robot, RegressorOptions::default(), &[]).expect("a regression model")
 }
 

@@ -2,8 +2,8 @@
 
 use denavit_codegen::model;
 use denavit_codegen::regressor::RegressorOptions;
+use denavit_elastic::{TwoStage, TwoStageOptions, two_stage};
 use denavit_identify::estimate::SlowRows;
-use denavit_identify::two_stage::{TwoStage, TwoStageOptions, two_stage};
 use denavit_identify::{Error, ErrorKind};
 use denavit_measure::condition::{Conditioning, Filter};
 use denavit_measure::log::{ColumnMapping, LogOf, MeasuredLog, read_log};

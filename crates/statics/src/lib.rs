@@ -6,8 +6,12 @@
 //! across the axes. Where links are held one after the other, differences of postures give them
 //! link by link; least squares in all rows does the subtraction.
 
-use super::error::{Error, ErrorKind};
-use crate::policy::statics::{BETTER, FAR, NEAR, OF_ANGLES, OF_TORQUES, OTHER_UNIT};
+mod error;
+mod policy;
+
+pub use error::{Error, ErrorKind};
+
+use crate::policy::{BETTER, FAR, NEAR, OF_ANGLES, OF_TORQUES, OTHER_UNIT};
 use denavit_codegen::expr::text::nearest;
 use denavit_numerics::Equations;
 use denavit_plants::regression::{RegressionJoint, RegressionModel, RegressionRows};
@@ -119,7 +123,7 @@ fn misread_postures(model: &RegressionModel, measurements: &[StaticMeasurement])
         100.0 * before,
         100.0 * after
     );
-    Some(Error::new(ErrorKind::Measurements, text))
+    Some(Error::of_all(text))
 }
 
 /// Positions of joints with rates and accelerations of 0.

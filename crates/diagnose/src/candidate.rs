@@ -58,7 +58,8 @@ impl Candidate {
 /// Units of laws that repeat along a joint.
 const PER_POSITION: [&str; 2] = ["1/rad", "1/m"];
 
-/// Most points from which one law's parameters are searched.
+/// Most points from which one law's parameters are searched: those of a backlash, which has twelve
+/// gaps, stiff and soft sides, thin and thick grease, and friction on either side.
 const MOST_STARTS: usize = 96;
 
 /// Where the search of a law's parameters begins: their values, and how far each may be from that;

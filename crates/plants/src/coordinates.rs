@@ -10,7 +10,8 @@ use super::regression::RegressionModel;
 use denavit_codegen::model::Role;
 use nalgebra::{DMatrix, DVector};
 
-/// The least share of its value in the file that a positive number of it keeps.
+/// The least share of its value in the file that a positive number of it keeps: logarithms need one
+/// above 0, and no log tells a millionth from nothing.
 const LEAST_OF: f64 = 1e-6;
 
 /// The least share of its size that an entry which is an expression keeps.

@@ -51,6 +51,32 @@ pub fn with_values(text: &str, values: &[NewValue<'_>]) -> Option<String> {
     edited(text, edits)
 }
 
+/// The text without entries of objects, each given by its JSON pointer; none if it has no such
+/// entry.
+pub fn without(text: &str, pointers: &[&str]) -> Option<String> {
+    let root = parse(text.as_bytes()).ok()?;
+    let removed = |pointer: &&str| {
+        let (object, key) = pointer.rsplit_once('/')?;
+        let object = object.split('/').skip(1).try_fold(&root, |node, key| match &node.value {
+            Value::List(items) => items.get(key.parse::<usize>().ok()?),
+            _ => node.get(key),
+        })?;
+        let entries = object.entries();
+        let place = entries.iter().position(|(own, _)| own == key)?;
+        let end = entries[place].1.end;
+        Some(match place.checked_sub(1) {
+            Some(before) => (entries[before].1.end..end, String::new()),
+            None => {
+                // with the comma before the next one
+                let more = text.get(end..)?.find(',').filter(|_| entries.len() > 1);
+                (object.start + 1..end + more.map_or(0, |at| at + 1), String::new())
+            }
+        })
+    };
+    let edits: Option<Vec<(Range<usize>, String)>> = pointers.iter().map(removed).collect();
+    edited(text, edits?)
+}
+
 /// Where an effect goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NewPlace<'a> {
@@ -346,4 +372,20 @@ fn entries(given: &[(Vec<&str>, &str)]) -> String {
         let _ = write!(result, "{separator}\"{head}\": {value}");
     }
     result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_go_with_their_commas() {
+        let text = r#"{"links": [{}, {"a": 1, "b": {"c": 2} , "d": [3]}]}"#;
+        let of = |key: &str| without(text, &[&format!("/links/1/{key}")]);
+        assert_eq!(of("a").as_deref(), Some(r#"{"links": [{}, { "b": {"c": 2} , "d": [3]}]}"#));
+        assert_eq!(of("b").as_deref(), Some(r#"{"links": [{}, {"a": 1 , "d": [3]}]}"#));
+        assert_eq!(of("d").as_deref(), Some(r#"{"links": [{}, {"a": 1, "b": {"c": 2}}]}"#));
+        assert_eq!(of("b/c").as_deref(), Some(r#"{"links": [{}, {"a": 1, "b": {} , "d": [3]}]}"#));
+        assert_eq!(of("e"), None);
+    }
 }

@@ -1,7 +1,7 @@
 //! The model with the identified values, as text that every command reads and as a robot.
 
 use super::error::Error;
-use super::model_text::{NewValue, with_values};
+use super::model_text::{NewValue, with_values, without};
 use super::regression::{ModelParameter, RegressionModel, RegressionParameter};
 use denavit_codegen::model::{self, About, BodyEntry, Robot, Role};
 use std::collections::BTreeMap;
@@ -83,7 +83,8 @@ pub fn updated_model(
     let errors: BTreeMap<String, f64> =
         model.parameters.iter().zip(&values).filter_map(with_error).collect();
     let read = |text: String| {
-        let robot = model::read("the identified model", text.as_bytes());
+        let text = with_what_is_to_accept(text);
+        let robot = model::read(NAME, text.as_bytes());
         robot.map(|robot| UpdatedModel { text, robot, errors: errors.clone() })
     };
     // What moves nothing stays as it is written, unless no body has it beside the rest.
@@ -91,6 +92,18 @@ pub fn updated_model(
         Ok(updated) => Ok(updated),
         Err(_) => read(text(&|_| true)?).map_err(Error::from),
     }
+}
+
+/// What messages call the model's file.
+const NAME: &str = "the identified model";
+
+/// A model's text where moments that no body has are accepted of those bodies alone that have them:
+/// the estimate may be that of a real one.
+fn with_what_is_to_accept(text: String) -> String {
+    let Err(error) = model::read(NAME, text.as_bytes()) else { return text };
+    let stale = error.faults.iter().filter(|fault| fault.cause == model::Cause::NothingToAccept);
+    let pointers: Vec<&str> = stale.map(|fault| fault.pointer.as_str()).collect();
+    without(&text, &pointers).unwrap_or(text)
 }
 
 /// A value without what is far below its error, or below what any number of a robot has.
@@ -110,4 +123,45 @@ fn is_moved(parameter: &ModelParameter, is_about_com: &dyn Fn(&str) -> bool) -> 
     let Some(Role::Body(_, entry)) = parameter.role else { return false };
     let is_moment = !matches!(entry, Mass | ComX | ComY | ComZ);
     is_moment && parameter.link.as_deref().is_some_and(is_about_com)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use denavit_codegen::regressor::functions::modelled;
+
+    const DISC: &str = r#"{
+  "format": "denavit-model/1", "name": "disc", "convention": "standard", "gravity": [0, 0, -9.81],
+  "links": [{
+    "name": "disc", "joint": {"type": "revolute"},
+    "body": {
+      "mass": 1, "com": [0, 0, 0], "about": "com",
+      "inertia": {"xx": 0.1, "yy": 0.1, "zz": 0.4, "xy": 0, "xz": 0, "yz": 0},
+      "accept_triangle_violation": "As printed."
+    }
+  }]
+}"#;
+
+    /// The text of the disc with other moments about its axes.
+    fn with_moments(moments: [f64; 3]) -> String {
+        let robot = model::read("disc", DISC.as_bytes()).expect("a model");
+        let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("a regression");
+        let values: Vec<f64> = model.parameters.iter().map(|one| one.value).collect();
+        let mut standard = model.standard_values(&values);
+        for (name, moment) in ["Ixx_disc", "Iyy_disc", "Izz_disc"].into_iter().zip(moments) {
+            let place = model.standard.iter().position(|one| one.name == name);
+            standard[place.expect("a parameter")] = moment;
+        }
+        let estimates = vec![None; model.listed.len()];
+        let found = FoundValues { standard: &standard, own: &[], estimates: &estimates };
+        updated_model(&robot, &model, found, DISC).expect("a model").text
+    }
+
+    #[test]
+    fn a_violation_is_accepted_of_bodies_that_have_one() {
+        let is_accepted = |text: &str| text.contains("accept_triangle_violation");
+        assert!(is_accepted(&with_moments([0.1, 0.1, 0.3])));
+        let text = with_moments([0.2, 0.2, 0.3]);
+        assert!(!is_accepted(&text) && text.contains(r#""zz": 0.3"#), "{text}");
+    }
 }

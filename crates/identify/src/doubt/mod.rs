@@ -22,7 +22,7 @@ pub use misreading::{ExchangedColumns, Misreading};
 pub use weigh::GivenValues;
 
 use crate::estimate::noise_of_positions;
-use denavit_evidence::policy::NOTHING_LIKE;
+use denavit_evidence::policy::{NOTHING_LIKE, SAME};
 use denavit_measure::JointIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_measure::log::ColumnMapping;
@@ -171,13 +171,18 @@ fn misread_alike(
         reading = reading.with(found.misreading, &model.joints);
         let after = search.left(&reading);
         let left_by_estimate = of_changed([&before.1, &after.1]);
+        let left_by_model = before.0.zip(after.0).map(|both| of_changed([&both.0, &both.1]));
+        // no law of friction is better than a share of it, and what it lacks is like a delay
+        let [before, after] = left_by_estimate;
+        let explained = (before.powi(2) - after.powi(2)).max(0.0).sqrt();
+        let is_law = found.misreading.is_late() && explained < SAME * search.friction(&reading);
         all.push(MisreadColumns {
             misreading: found.misreading,
             log_odds: found.log_odds,
-            left_by_model: before.0.zip(after.0).map(|both| of_changed([&both.0, &both.1])),
+            left_by_model,
             left_by_estimate,
             file: None,
-            is_sure: found.is_sure() && left_by_estimate[1] < NOTHING_LIKE,
+            is_sure: found.is_sure() && !is_law && left_by_estimate[1] < NOTHING_LIKE,
             errors: found.errors,
             given: ColumnMapping::default(),
             joints: model.joints.clone(),

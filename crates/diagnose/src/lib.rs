@@ -9,6 +9,7 @@
 
 mod behind_law;
 mod between;
+mod cancelling;
 mod candidate;
 mod catalogue;
 mod columns;

@@ -1,5 +1,6 @@
 //! What a model lacks.
 
+mod cancelling;
 mod columns;
 mod course;
 mod elastic;

@@ -132,7 +132,7 @@ impl fmt::Display for FileFault {
             Self::NotANumber { column, cell, .. } => not_a_number(f, column, cell),
             Self::NoFeature { format, feature } => write!(
                 f,
-                "is {format}, which this build does not read\n  hint: `cargo install --path . \
+                "is {format}, which this build does not read\n  hint: `cargo install --locked --path . \
                  --features {feature}` in the sources of denavit builds one that does"
             ),
             Self::NotInBatches => write!(

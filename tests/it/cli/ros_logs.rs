@@ -212,6 +212,10 @@ fn formats_whose_feature_is_off_name_it() {
         let run = run(&directory, &format!("identify arm.urdf --train {name}"));
         assert_eq!(run.code, Some(2));
         assert!(run.stderr.contains(told), "{}", run.stderr);
-        assert!(run.stderr.contains("cargo install --path . --features "), "{}", run.stderr);
+        assert!(
+            run.stderr.contains("cargo install --locked --path . --features "),
+            "{}",
+            run.stderr
+        );
     }
 }

@@ -211,7 +211,10 @@ impl Misreading {
     /// How to mend it, beside what is mapped already.
     pub(super) fn hint(self, joints: &[RegressionJoint], given: &ColumnMapping) -> String {
         let mends = |column: &str, what: &str, number: String| {
-            format!("`logs.columns` with {{\"{column}\": {{\"{what}\": {number}}}}} mends that")
+            let own = given.source(column).map(|own| own.column).filter(|own| own != column);
+            let own = own.map_or_else(String::new, |own| format!("\"column\": {own:?}, "));
+            let new = format!("{{\"{column}\": {{{own}\"{what}\": {number}}}}}");
+            format!("`logs.columns` with {new} mends that")
         };
         let scale = |column: &str, factor: f64| {
             let (prefix, is_of_all) = match column.strip_suffix("JOINT") {

@@ -52,10 +52,10 @@ pub enum LogFault {
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)] // the fields are what the messages name
 pub enum Suspicion {
-    /// The time seems to count milliseconds or microseconds.
-    TimeUnit { step: f64, factor: f64 },
+    /// The time seems to count milliseconds or microseconds; holds its column, if mapped.
+    TimeUnit { step: f64, factor: f64, source: Option<String> },
     /// A position seems to be in degrees; holds what brings the column to radians.
-    Degrees { column: String, largest: f64, factor: f64 },
+    Degrees { column: String, largest: f64, factor: f64, source: Option<String> },
     /// A logged rate is another multiple of the derivative of its position.
     RateScale { column: String, ratio: f64 },
     /// A logged rate is not the derivative of its position.
@@ -76,13 +76,16 @@ pub enum Suspicion {
 }
 
 impl Suspicion {
-    /// With factors of what stands in the log, whose columns have been scaled already.
-    pub(super) fn of_log(mut self, scale_of: impl Fn(&str) -> f64) -> Self {
-        match &mut self {
-            Self::TimeUnit { factor, .. } => *factor *= scale_of("t"),
-            Self::Degrees { column, factor, .. } => *factor *= scale_of(column),
-            _ => {}
-        }
+    /// With factors of what stands in the log, whose columns have been scaled already, and where
+    /// it stands.
+    pub(super) fn of_log(mut self, of: impl Fn(&str) -> (f64, Option<String>)) -> Self {
+        let (column, factor, source) = match &mut self {
+            Self::TimeUnit { factor, source, .. } => ("t", factor, source),
+            Self::Degrees { column, factor, source, .. } => (column.as_str(), factor, source),
+            _ => return self,
+        };
+        let (scale, name) = of(column);
+        (*factor, *source) = (*factor * scale, name);
         self
     }
 
@@ -252,14 +255,20 @@ impl fmt::Display for LogFault {
     }
 }
 
+/// What a mapping keeps of a column that it has by another name.
+fn of_column(source: &Option<String>) -> String {
+    source.as_ref().map_or_else(String::new, |name| format!("\"column\": {name:?}, "))
+}
+
 impl fmt::Display for Suspicion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::TimeUnit { step, factor } => write!(
+            Self::TimeUnit { step, factor, source } => write!(
                 f,
                 "a step of `t` is {}, as if it did not count seconds\n  hint: map it: {{\"t\": \
-                 {{\"scale\": {factor}}}}}{}",
+                 {{{}\"scale\": {factor}}}}}{}",
                 short(*step),
+                of_column(source),
                 match step {
                     _ if *factor > 1.0 =>
                         " if it counts hours, {\"t\": {\"scale\": 86400}} if days",
@@ -270,10 +279,11 @@ impl fmt::Display for Suspicion {
                     _ => "",
                 }
             )?,
-            Self::Degrees { column, largest, factor } => write!(
+            Self::Degrees { column, largest, factor, source } => write!(
                 f,
                 "`{column}` goes to {largest:.4}, as if it were in degrees\n  hint: map it: \
-                 {{\"{column}\": {{\"scale\": {factor}}}}}"
+                 {{\"{column}\": {{{}\"scale\": {factor}}}}}",
+                of_column(source)
             )?,
             Self::RateScale { column, ratio } => write!(
                 f,

@@ -194,6 +194,7 @@ pub fn read_opened(
     let failed = |faults| Error::from(LogFaults { file: file.to_owned(), faults });
     let wanted = Wanted::new(&log, robot, mapping).map_err(failed)?;
     let header = std::mem::take(&mut log.header);
+    let logged: Vec<String> = log.columns.iter().map(|one| one.name.clone()).collect();
     let read = log.read(&wanted.places(), &wanted.clocks());
     let mut table = read.map_err(|error| of_file(file, error))?;
     for (values, column) in table.columns.iter_mut().zip(&wanted.columns) {
@@ -228,7 +229,7 @@ pub fn read_opened(
     log.remarks.append(&mut found.remarks);
     let mut faults = found.faults;
     for suspicion in jumps.into_iter().chain(found.suspicions) {
-        let suspicion = suspicion.of_log(|column| wanted.scale_of(column));
+        let suspicion = suspicion.of_log(|column| wanted.mapped(column, &logged));
         match robot.accepts_suspicious {
             true => log.remarks.push(LogRemark::Accepted(suspicion)),
             false => faults.push(LogFault::Suspicion(suspicion)),

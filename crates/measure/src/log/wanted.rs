@@ -42,10 +42,12 @@ pub(super) struct Wanted {
 }
 
 impl Wanted {
-    /// What the numbers of a column were multiplied by.
-    pub(super) fn scale_of(&self, name: &str) -> f64 {
+    /// What the numbers of a column were multiplied by, and its name in the log if it is another.
+    pub(super) fn mapped(&self, name: &str, logged: &[String]) -> (f64, Option<String>) {
         let own = self.columns.iter().find(|column| column.name == name);
-        own.map_or(1.0, |column| column.scale)
+        own.map_or((1.0, None), |own| {
+            (own.scale, Some(logged[own.place].clone()).filter(|logged| logged != name))
+        })
     }
 }
 

@@ -59,13 +59,13 @@ pub(crate) struct Arguments {
     )]
     most: u8,
     /// What separating experiments are drawn with
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
     seed: u64,
     /// Cutoff of the filter of torques in Hz; without it the filter follows from the motion
-    #[arg(long, value_name = "HZ", value_parser = positive)]
+    #[arg(long, value_name = "HZ", value_parser = positive, allow_negative_numbers = true)]
     filter: Option<f64>,
     /// Stop after so many seconds, with the best until then
-    #[arg(long, value_name = "S", value_parser = positive)]
+    #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
     time_limit: Option<f64>,
     /// Take logs as they are, however wrong they look
     #[arg(long)]

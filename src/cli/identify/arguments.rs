@@ -223,7 +223,7 @@ pub(super) struct ConditionArguments {
     /// Cutoff of the zero-phase Butterworth filter [Hz], with the order of one pass if it is not 4;
     /// or none. By default, a tenth of the sampling rate, halved as long as noise of the
     /// positions biases parameters
-    #[arg(long, value_name = "HZ[:ORDER]", value_parser = filter)]
+    #[arg(long, value_name = "HZ[:ORDER]", value_parser = filter, allow_negative_numbers = true)]
     filter: Option<FilterChoice>,
     /// Leave one sample in so many; by default, as the filter allows and 1200 remain
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]

@@ -7,6 +7,7 @@ use super::logs::{log_source, note_logs, run_file};
 use super::options::ShapesOption;
 use super::outputs::{check_outputs, on_stdout, print_answer, write_given, write_whole};
 use super::progress::Progress;
+use super::said::say_note;
 use clap::{Args, ValueEnum, ValueHint};
 use denavit::report::answer::{
     ShownWithRun, drawn_at, drawn_run, run_json, run_page, run_text, window_of,
@@ -119,6 +120,11 @@ pub(super) fn run_kept(
             return Err(Failure::StepOfEventScheme);
         }
         scenario.set_step_s(step_s);
+    }
+    for effect in &scenario.of_logs {
+        say_note(&format_args!(
+            "remark: effect {effect} acts on what is logged: the run is without it"
+        ));
     }
     let whole = [scenario.initial.t_s, scenario.simulation.end_s];
     if arguments.window.is_some_and(|[from, to]| from < whole[0] || to > whole[1]) {

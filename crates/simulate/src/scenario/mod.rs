@@ -82,6 +82,8 @@ pub struct Scenario {
     pub parameters: Vec<Override>,
     /// The largest speed of each joint, where its model states one [rad/s, m/s].
     pub speed_limits: Vec<Option<f64>>,
+    /// Effects of its model on what is logged, with their places: no run has them.
+    pub of_logs: Vec<String>,
     /// What drives it.
     pub control: Control,
     /// Where it starts.

@@ -18,10 +18,10 @@ use crate::drive::DriveModelling;
 use crate::ground::Ground;
 use crate::simulation::Simulation;
 use crate::state::State;
-use denavit_codegen::effect;
+use denavit_codegen::effect::{self, Law};
 use denavit_codegen::expr::text::nearest;
 use denavit_codegen::model::json::Value;
-use denavit_codegen::model::{self, Fields, Node, Robot};
+use denavit_codegen::model::{self, AddedEffect, Fields, Node, Robot};
 use denavit_plants::{Cradle, Override, Plant, PlantModel, plant_of};
 
 /// Reads a model by what a scenario calls it: a shipped name, or a path beside the scenario. The
@@ -94,7 +94,8 @@ fn scenario(
     let tolerances = options::tolerances(fields, Tolerances::of_method(simulation.method), report);
     let scheme = stepping::scheme(fields, report);
     let (stepping, stepping_tolerances) = stepping::stepping(fields, report);
-    let RobotOfScenario { mut plant, parameters, speed_limits } = plant(fields, load, report)?;
+    let RobotOfScenario { mut plant, parameters, speed_limits, of_logs } =
+        plant(fields, load, report)?;
     let mut control = control(fields, plant.model(), &mut Logs::new(load), report);
     let posture = gait(fields, plant.as_mut(), planner, &mut control, report);
     let initial = initial(fields, plant.as_mut(), &control, posture, report);
@@ -109,6 +110,7 @@ fn scenario(
         plant,
         parameters,
         speed_limits,
+        of_logs,
         control,
         initial,
         simulation,
@@ -179,6 +181,8 @@ struct RobotOfScenario {
     parameters: Vec<Override>,
     /// Of its joints.
     speed_limits: Vec<Option<f64>>,
+    /// Effects of its model on what is logged, with their places.
+    of_logs: Vec<String>,
 }
 
 fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<RobotOfScenario> {
@@ -191,7 +195,12 @@ fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<
         }
         let balls = fields.count("cradle_balls", ranges::CRADLE_BALLS, 2, report);
         let plant = Box::new(Cradle::new(balls));
-        return Some(RobotOfScenario { plant, parameters: Vec::new(), speed_limits: Vec::new() });
+        return Some(RobotOfScenario {
+            plant,
+            parameters: Vec::new(),
+            speed_limits: Vec::new(),
+            of_logs: Vec::new(),
+        });
     }
     let node = fields.require("model", report)?;
     let name = node.text(report)?;
@@ -224,7 +233,22 @@ fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<
     let made = plant_of(&robot, &overrides);
     let place = if overrides.is_empty() { node.at() } else { fields.place("parameters") };
     let plant = made.map_err(|error| report.push(place, Cause::Plant(error))).ok()?;
-    Some(RobotOfScenario { plant, parameters: overrides, speed_limits: speed_limits(&robot) })
+    Some(RobotOfScenario {
+        plant,
+        parameters: overrides,
+        speed_limits: speed_limits(&robot),
+        of_logs: of_logs(&robot),
+    })
+}
+
+/// The effects of a robot that change what is logged, and not how it moves.
+fn of_logs(robot: &Robot) -> Vec<String> {
+    let is_of_logs = |one: &&AddedEffect| {
+        effect::find(&one.effect).is_some_and(|own| matches!(own.law, Law::Measured(_)))
+    };
+    let name =
+        |one: &AddedEffect| format!("`{}` at {}", one.effect, effect::place_name(robot, one.at));
+    robot.effects.iter().filter(is_of_logs).map(name).collect()
 }
 
 /// The joint that a key names.

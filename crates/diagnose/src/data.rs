@@ -79,11 +79,12 @@ pub(super) struct ModelTorques {
 }
 
 impl<'a> Data<'a> {
-    /// The rows of logs.
-    pub(super) fn new(nominal: &'a Nominal<'a>, mut signals: Vec<Signals>) -> Self {
+    /// The rows of logs. What friction may be while a drive rests or turns around is told with z.
+    pub(super) fn new(nominal: &'a Nominal<'a>, mut signals: Vec<Signals>, z: &[f64]) -> Self {
         let joints = nominal.model.joints.len();
         let (given, directions) = (nominal.phi(&vec![0.0; nominal.len()]), nominal.directions());
-        signals.iter_mut().for_each(|signals| settle(nominal, signals, &given));
+        let near = nominal.phi(z);
+        signals.iter_mut().for_each(|signals| settle(nominal, signals, &near));
         let rows: Vec<LogRows> = signals.iter().map(|log| LogRows::new(nominal, log)).collect();
         let mut data = Self {
             nominal,
@@ -105,9 +106,9 @@ impl<'a> Data<'a> {
         };
         let time: Vec<PerJoint> = data.signals.iter().map(of_time).collect();
         let unnamed: Vec<Vec<PerJoint>> =
-            data.signals.iter().map(|signals| unnamed(nominal, signals, &given)).collect();
+            data.signals.iter().map(|signals| unnamed(nominal, signals, &near)).collect();
         let weights: Vec<PerJoint> =
-            data.signals.iter().map(|signals| weights(nominal, signals, &given)).collect();
+            data.signals.iter().map(|signals| weights(nominal, signals, &near)).collect();
         for at in (0..joints).map(JointIndex) {
             let joint = at.0;
             for (log, own) in rows.iter().enumerate() {

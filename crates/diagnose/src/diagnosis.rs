@@ -145,7 +145,8 @@ pub fn diagnose(
     let read = |logs: Vec<MeasuredLog>| conditioned(logs, filters);
     let logs = Split { train: read(request.train)?, held_out: read(request.held_out)? };
     let nominal = nominal.moving_as(&logs.train);
-    let data = logs.map(|signals| Data::new(&nominal, signals));
+    let given = Effects { candidates: request.candidates, taken: &request.given };
+    let data = settled(&nominal, logs, given);
     let floors = data.each_ref().map(|data| floors(&nominal, &data.signals));
     let setting = Setting {
         data: data.each_ref(),
@@ -178,8 +179,9 @@ pub fn diagnose(
     let (after, mut effects) = loop {
         let after = setting.state(&found.after.parts, &z);
         let effects = found_effects(&setting, &search, &found, &before, &after);
-        let idle = effects.iter().position(FoundEffect::is_idle);
-        let Some(place) = idle else { break (after, effects) };
+        let idle = effects.iter().enumerate().filter(|(_, one)| one.is_idle());
+        let worst = idle.min_by(|(_, a), (_, b)| a.log_predicted.total_cmp(&b.log_predicted));
+        let Some((place, _)) = worst else { break (after, effects) };
         search.drop(&mut found, place);
     };
     if let Some(aliases) = request.aliases {
@@ -202,6 +204,24 @@ pub fn diagnose(
     };
     judge(&mut diagnosis, &setting, &found, &after, &misread);
     Ok(diagnosis)
+}
+
+/// The rows of logs. Whether a drive at rest needs more than it slides with is told by the weight
+/// of its bodies: by the numbers that all logs have, not by those of the model.
+fn settled<'a>(
+    nominal: &'a Nominal<'a>,
+    logs: Split<Vec<Signals>>,
+    given: Effects<'_>,
+) -> Split<Data<'a>> {
+    let of =
+        |z: &[f64], logs: Split<Vec<Signals>>| logs.map(|signals| Data::new(nominal, signals, z));
+    let as_given = of(&vec![0.0; nominal.len()], logs.clone());
+    let mut rests = logs.train.iter().chain(&logs.held_out).flat_map(|log| &log.rests);
+    if rests.all(Vec::is_empty) {
+        return as_given;
+    }
+    let sets = Vec::from(as_given.each_ref().into_array());
+    of(&null(&sets, given)[..nominal.len()], logs)
 }
 
 /// The model's own numbers, in their deviations, as all logs have them where nothing is missing.

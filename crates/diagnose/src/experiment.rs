@@ -230,7 +230,7 @@ impl Ambiguity<'_> {
 
     /// What is asked of names in a motion; none if nothing is measured there.
     fn seen<T>(&self, log: Signals, asked: impl FnOnce(&mut Seen<'_, '_>) -> T) -> Option<T> {
-        let mut data = Data::new(self.nominal, vec![log]);
+        let mut data = Data::new(self.nominal, vec![log], self.z);
         if data.rows() == 0 {
             return None;
         }

@@ -91,7 +91,7 @@ fn is_law(diagnosis: &Diagnosis, setting: &Setting<'_>, one: &FoundEffect) -> bo
         let floor = diagnosis.train.floor.per_joint[left.equation].unwrap_or(0.0);
         left.share < floor && one.log_predicted > policy::NAMED
     };
-    let stands = left.is_none_or(|left| !is_unexplained(left, one.size) || is_noise(left));
+    let stands = left.is_none_or(|left| !is_unexplained(left, one.opens) || is_noise(left));
     stands && !changes && one.stands_for.is_none()
 }
 
@@ -121,7 +121,7 @@ fn unexplained<'d>(diagnosis: &'d Diagnosis, setting: &Setting<'_>) -> Option<&'
     // what explains one joint excuses nothing at another
     let unexplained = diagnosis.leftovers.iter().filter(|left| {
         let there = diagnosis.effects.iter().filter(|one| acts_at(setting, one, left));
-        is_unexplained(left, there.map(|one| one.size).fold(0.0, f64::max))
+        is_unexplained(left, there.map(|one| one.opens).fold(0.0, f64::max))
     });
     unexplained.max_by(|a, b| a.share.total_cmp(&b.share))
 }
@@ -189,15 +189,22 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
         let verdict = if has(true) { Verdict::PartlyExplained } else { Verdict::Unexplained };
         return (verdict, what.into_iter().collect());
     }
-    let ambiguous: Vec<String> = diagnosis
-        .effects
-        .iter()
-        .filter(|one| probability(one) < 0.5)
-        .map(|one| setting.candidates[one.candidate].name())
-        .collect();
+    let names = |is_asked: &dyn Fn(&FoundEffect) -> bool| -> Vec<String> {
+        let asked = diagnosis.effects.iter().filter(|one| is_asked(one));
+        asked.map(|one| setting.candidates[one.candidate].name()).collect()
+    };
+    let ambiguous = names(&|one| probability(one) < 0.5);
     if !ambiguous.is_empty() {
         let why = format!("alias: others would do as well as {}", ambiguous.join(", "));
         return (Verdict::CannotTell, vec![why]);
+    }
+    let unjudged = names(&|one| one.judged < policy::WORTH);
+    if !unjudged.is_empty() {
+        let why = format!(
+            "held-out logs do not judge {}: no motion of theirs has it act",
+            unjudged.join(", ")
+        );
+        return (Verdict::PartlyExplained, vec![why]);
     }
     match diagnosis.share_closed() {
         Some(closed) if closed < CLOSED => {

@@ -11,7 +11,7 @@ const PENDULUM: &str = r#"{
   "links": [{
     "name": "rod", "joint": {"type": "revolute", "a": 0.5},
     "body": {"mass": 2, "com": [0, 0, 0], "about": "com",
-             "inertia": {"xx": 0, "yy": 0, "zz": 0.1, "xy": 0, "xz": 0, "yz": 0}}
+             "inertia": {"xx": 0.05, "yy": 0.05, "zz": 0.1, "xy": 0, "xz": 0, "yz": 0}}
   }],
   "drives": {"rod": {"viscous": 0.05, "coulomb": 0.1}}
 }"#;

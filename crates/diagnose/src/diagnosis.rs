@@ -146,7 +146,7 @@ pub fn diagnose(
     let logs = Split { train: read(request.train)?, held_out: read(request.held_out)? };
     let nominal = nominal.moving_as(&logs.train);
     let given = Effects { candidates: request.candidates, taken: &request.given };
-    let data = settled(&nominal, logs, given);
+    let data = settled(&nominal, &logs, given);
     let floors = data.each_ref().map(|data| floors(&nominal, &data.signals));
     let setting = Setting {
         data: data.each_ref(),
@@ -210,18 +210,16 @@ pub fn diagnose(
 /// of its bodies: by the numbers that all logs have, not by those of the model.
 fn settled<'a>(
     nominal: &'a Nominal<'a>,
-    logs: Split<Vec<Signals>>,
+    logs: &Split<Vec<Signals>>,
     given: Effects<'_>,
 ) -> Split<Data<'a>> {
-    let of =
-        |z: &[f64], logs: Split<Vec<Signals>>| logs.map(|signals| Data::new(nominal, signals, z));
-    let as_given = of(&vec![0.0; nominal.len()], logs.clone());
-    let mut rests = logs.train.iter().chain(&logs.held_out).flat_map(|log| &log.rests);
-    if rests.all(Vec::is_empty) {
+    let of = |z: &[f64]| logs.each_ref().map(|logs| Data::new(nominal, logs.clone(), z));
+    let as_given = of(&vec![0.0; nominal.len()]);
+    if logs.train.iter().chain(&logs.held_out).flat_map(|log| &log.rests).all(Vec::is_empty) {
         return as_given;
     }
     let sets = Vec::from(as_given.each_ref().into_array());
-    of(&null(&sets, given)[..nominal.len()], logs)
+    of(&null(&sets, given)[..nominal.len()])
 }
 
 /// The model's own numbers, in their deviations, as all logs have them where nothing is missing.

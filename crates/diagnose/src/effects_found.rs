@@ -86,7 +86,7 @@ pub struct FoundEffect {
 }
 
 impl FoundEffect {
-    /// Whether logs that its values were not fitted to do not ask for it, though it acts in them; or
+    /// Whether logs that its values were not fitted to do not ask for it, though it acts there; or
     /// those that they were fitted to ask for nothing of it, so that the others alone show it.
     pub(super) fn is_idle(&self) -> bool {
         let acts = self.judged > policy::WORTH;

@@ -228,12 +228,10 @@ impl Law for JointLaw {
     }
 
     fn torque(&self, motion: Motion<'_>, values: &[f64]) -> Response {
-        let first = match self.acts {
-            Acts::Gap | Acts::Sprung => self.behind_torque(&motion, values),
-            _ => None,
-        };
+        let first = matches!(self.acts, Acts::Gap | Acts::Sprung)
+            .then(|| self.behind_torque(&motion, values));
         let whole = || Response { gradient: Vec::new(), ..self.response(motion, values) };
-        first.unwrap_or_else(whole)
+        first.flatten().unwrap_or_else(whole)
     }
 }
 

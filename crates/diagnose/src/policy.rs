@@ -181,10 +181,6 @@ pub(crate) mod verdict {
     /// tenth of either are then a third of it. A free pendulum that is steered has 4 to 6 times as
     /// much, and an arm that is moved once.
     pub(crate) const CANCELLED: f64 = 3.0;
-
-    /// The share of what noise does not explain of held-out logs that effects close where they
-    /// explain it: most of it.
-    pub(crate) const CLOSED: f64 = 0.5;
 }
 
 /// `worth.rs`: How large an effect is: whether that is worth a name.

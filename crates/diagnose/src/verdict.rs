@@ -9,7 +9,7 @@ use super::leftover::Leftover;
 use super::rounds::Found;
 use super::signals::Signals;
 use super::state::{Setting, State};
-use crate::policy::verdict::{CANCELLED, CLOSED, UNTOLD};
+use crate::policy::verdict::{CANCELLED, UNTOLD};
 use denavit_evidence::policy;
 use denavit_identify::doubt::MisreadColumns;
 
@@ -56,12 +56,11 @@ pub(super) fn judge(
     for (one, is_named) in diagnosis.effects.iter_mut().zip(named) {
         one.is_named = is_named;
     }
-    let cancelled = cancelled(diagnosis, setting);
-    if cancelled.is_some() {
-        diagnosis.effects.iter_mut().for_each(|one| one.is_named = false);
-    }
-    let (verdict, mut reasons) = match cancelled {
-        Some(why) => (Verdict::CannotTell, vec![why]),
+    let (verdict, mut reasons) = match cancelled(diagnosis, setting) {
+        Some(why) => {
+            diagnosis.effects.iter_mut().for_each(|one| one.is_named = false);
+            (Verdict::CannotTell, vec![why])
+        }
         None => said(diagnosis, setting),
     };
     reasons.extend(doubts(diagnosis, setting, found));
@@ -135,8 +134,9 @@ fn cancelled(diagnosis: &Diagnosis, setting: &Setting<'_>) -> Option<String> {
     };
     let near = || diagnosis.leftovers.iter().find(is_open);
     let joint = unexplained(diagnosis, setting).or_else(near)?.equation;
-    let both = setting.data.each_ref().map(|data| terms_over_torque(data));
-    let times = both.train.get(joint)?.max(both.held_out[joint]);
+    (joint < setting.data.train.nominal.model.joints.len()).then_some(())?;
+    let both = setting.data.each_ref().map(|data| terms_over_torque(data, joint));
+    let times = both.train.max(both.held_out);
     (times > CANCELLED).then(|| {
         format!(
             "the torque of {} is a small difference: its weight and inertia take {times:.1} times \
@@ -200,22 +200,13 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
     }
     let unjudged = names(&|one| one.judged < policy::WORTH);
     if !unjudged.is_empty() {
-        let why = format!(
-            "held-out logs do not judge {}: no motion of theirs has it act",
-            unjudged.join(", ")
-        );
+        let why = format!("no motion of held-out logs has {} act", unjudged.join(", "));
         return (Verdict::PartlyExplained, vec![why]);
     }
     match diagnosis.share_closed() {
-        Some(closed) if closed < CLOSED => {
-            let Gaps { after, floor, .. } = &diagnosis.held_out;
-            let why = format!(
-                "{} of what noise does not explain of held-out logs is closed: the torque mismatch \
-                 is {}, and their noise {}",
-                percent(closed.max(0.0)),
-                percent(after.all),
-                percent(floor.all)
-            );
+        Some(closed) if closed < policy::SAME => {
+            let closed = percent(closed.max(0.0));
+            let why = format!("{closed} of what noise does not explain of held-out logs is closed");
             (Verdict::PartlyExplained, vec![why])
         }
         _ => (Verdict::Explained, Vec::new()),

@@ -132,8 +132,8 @@ impl fmt::Display for FileFault {
             Self::NotANumber { column, cell, .. } => not_a_number(f, column, cell),
             Self::NoFeature { format, feature } => write!(
                 f,
-                "is {format}, which this build does not read\n  hint: `cargo install --locked --path . \
-                 --features {feature}` in the sources of denavit builds one that does"
+                "is {format}, which this build does not read\n  hint: `cargo install --locked \
+                 --path . --features {feature}` in the sources of denavit builds one that does"
             ),
             Self::NotInBatches => write!(
                 f,

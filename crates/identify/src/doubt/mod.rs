@@ -172,10 +172,9 @@ fn misread_alike(
         let after = search.left(&reading);
         let left_by_estimate = of_changed([&before.1, &after.1]);
         let left_by_model = before.0.zip(after.0).map(|both| of_changed([&both.0, &both.1]));
-        // no law of friction is better than a share of it, and what it lacks is like a delay
-        let [before, after] = left_by_estimate;
-        let explained = (before.powi(2) - after.powi(2)).max(0.0).sqrt();
-        let is_law = found.misreading.is_late() && explained < SAME * search.friction(&reading);
+        // laws of friction are no better than a tenth, and what they lack is like a delay
+        let [before, after] = left_by_estimate.map(|left| left * left);
+        let is_law = found.misreading.is_late() && before - after < SAME * SAME;
         all.push(MisreadColumns {
             misreading: found.misreading,
             log_odds: found.log_odds,

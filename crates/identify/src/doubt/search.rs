@@ -60,18 +60,6 @@ impl Search<'_> {
         (by_values, self.sample.left_by(reading, &estimate.phi))
     }
 
-    /// The share that friction of an estimate has of the torque, of the joint where it is largest.
-    pub(super) fn friction(&mut self, reading: &Reading) -> f64 {
-        let estimate = self.straight(reading).all.pop().expect("values are off in some way");
-        let mut without = estimate.phi.clone();
-        self.beliefs.friction.iter().for_each(|&at| without[at] = 0.0);
-        let [with, without] =
-            [&estimate.phi, &without].map(|phi| self.sample.left_by(reading, phi));
-        let both = with.iter().zip(without).filter_map(|(with, without)| with.zip(without));
-        both.map(|(with, without)| (without.powi(2) - with.powi(2)).max(0.0).sqrt())
-            .fold(0.0, f64::max)
-    }
-
     /// Weighs a reading that others are held against.
     fn straight(&mut self, reading: &Reading) -> Weighed {
         let rows = self.sample.rows(reading);

@@ -29,8 +29,6 @@ pub(super) struct Beliefs {
     errors: Option<Vec<f64>>,
     /// Whether it cannot be below 0.
     is_positive: Vec<bool>,
-    /// The places of friction in phi.
-    pub(super) friction: Vec<usize>,
 }
 
 /// What is known of the noise of a column of torque.
@@ -87,11 +85,6 @@ impl Beliefs {
             };
             model.axes[at].members.iter().all(is_positive)
         };
-        let is_friction = |at: &usize| {
-            let owners = model.axes[*at].members.iter().map(|&(at, _)| &model.standard[at].owner);
-            let prefixes = [JointEntry::Viscous, JointEntry::Coulomb].map(JointEntry::prefix);
-            owners.flatten().any(|(_, prefix)| prefixes.contains(prefix))
-        };
         let own = values.map(|own| own.phi.to_vec()).or_else(|| nominal_values(model));
         // friction is what it is on a day, and a sum of what cancels has errors of its terms
         let scale = |at: usize| {
@@ -106,7 +99,6 @@ impl Beliefs {
             values: own.map(DVector::from_vec),
             pattern: model.pattern().to_vec(),
             is_positive: (0..model.rank()).map(is_positive).collect(),
-            friction: (0..model.rank()).filter(is_friction).collect(),
         }
     }
 

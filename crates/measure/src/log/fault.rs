@@ -91,18 +91,8 @@ impl Suspicion {
 
     /// Whether a single sample can raise it, and not how a log goes on alone.
     pub fn is_of_samples(&self) -> bool {
-        match self {
-            Self::Degrees { .. }
-            | Self::BeyondTorque { .. }
-            | Self::Jump { .. }
-            | Self::BeyondLimits { .. } => true,
-            Self::TimeUnit { .. }
-            | Self::RateScale { .. }
-            | Self::NotTheRate { .. }
-            | Self::Swapped { .. }
-            | Self::ConstantTorque { .. }
-            | Self::CommandOfSpring { .. } => false,
-        }
+        use Suspicion::{BeyondLimits, BeyondTorque, Degrees, Jump};
+        matches!(self, Degrees { .. } | BeyondTorque { .. } | Jump { .. } | BeyondLimits { .. })
     }
 }
 

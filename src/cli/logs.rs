@@ -45,6 +45,5 @@ fn mcap(Log { header, columns, values }: &Log) -> Result<Vec<u8>, String> {
 
 #[cfg(not(feature = "mcap"))]
 fn mcap(_: &Log) -> Result<Vec<u8>, String> {
-    Err("`cargo install --locked --path . --features mcap` makes a build that writes MCAP"
-        .to_owned())
+    Err("`cargo install --locked --path . --features mcap` makes one that writes MCAP".to_owned())
 }

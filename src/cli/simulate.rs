@@ -2,12 +2,11 @@
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{FILES, mapping};
+use super::files::{FILES, mapping, say_notes};
 use super::logs::{log_source, note_logs, run_file};
 use super::options::ShapesOption;
 use super::outputs::{check_outputs, on_stdout, print_answer, write_given, write_whole};
 use super::progress::Progress;
-use super::said::say_note;
 use clap::{Args, ValueEnum, ValueHint};
 use denavit::report::answer::{
     ShownWithRun, drawn_at, drawn_run, run_json, run_page, run_text, window_of,
@@ -121,11 +120,7 @@ pub(super) fn run_kept(
         }
         scenario.set_step_s(step_s);
     }
-    for effect in &scenario.of_logs {
-        say_note(&format_args!(
-            "remark: effect {effect} acts on what is logged: the run is without it"
-        ));
-    }
+    say_notes(&scenario.notes());
     let whole = [scenario.initial.t_s, scenario.simulation.end_s];
     if arguments.window.is_some_and(|[from, to]| from < whole[0] || to > whole[1]) {
         return Err(Failure::Window(whole));

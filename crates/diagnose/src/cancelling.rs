@@ -8,8 +8,7 @@ use super::floor::rms;
 use super::rows::torques;
 use denavit_measure::JointIndex;
 
-/// What weight of a joint takes and what all else does (roots of mean squares together), over its
-/// torque.
+/// What weight and all else take (roots of mean squares together), over the torque of a joint.
 pub(super) fn terms_over_torque(data: &Data<'_>, joint: usize) -> f64 {
     let nominal = data.nominal;
     let phi = nominal.phi(&vec![0.0; nominal.len()]);

@@ -5,7 +5,8 @@ use super::columns::misread;
 use super::curve::{Curve, LoggedMotion, curves, logged};
 use super::data::Data;
 use super::effects_found::{
-    FoundEffect, GivenEffect, driven_names, found_effects, given_effects, separate, tell_aliases,
+    FoundEffect, GivenEffect, driven_names, found_effects, given_effects, idle, separate,
+    tell_aliases,
 };
 use super::elastic::Spring;
 use super::error::{Cause, Error};
@@ -145,8 +146,7 @@ pub fn diagnose(
     let read = |logs: Vec<MeasuredLog>| conditioned(logs, filters);
     let logs = Split { train: read(request.train)?, held_out: read(request.held_out)? };
     let nominal = nominal.moving_as(&logs.train);
-    let given = Effects { candidates: request.candidates, taken: &request.given };
-    let data = settled(&nominal, &logs, given);
+    let data = settled(&nominal, &logs, request.candidates, &request.given);
     let floors = data.each_ref().map(|data| floors(&nominal, &data.signals));
     let setting = Setting {
         data: data.each_ref(),
@@ -179,9 +179,7 @@ pub fn diagnose(
     let (after, mut effects) = loop {
         let after = setting.state(&found.after.parts, &z);
         let effects = found_effects(&setting, &search, &found, &before, &after);
-        let idle = effects.iter().enumerate().filter(|(_, one)| one.is_idle());
-        let worst = idle.min_by(|(_, a), (_, b)| a.log_predicted.total_cmp(&b.log_predicted));
-        let Some((place, _)) = worst else { break (after, effects) };
+        let Some(place) = idle(&effects) else { break (after, effects) };
         search.drop(&mut found, place);
     };
     if let Some(aliases) = request.aliases {
@@ -211,7 +209,8 @@ pub fn diagnose(
 fn settled<'a>(
     nominal: &'a Nominal<'a>,
     logs: &Split<Vec<Signals>>,
-    given: Effects<'_>,
+    candidates: &[Candidate],
+    taken: &[Taken],
 ) -> Split<Data<'a>> {
     let of = |z: &[f64]| logs.each_ref().map(|logs| Data::new(nominal, logs.clone(), z));
     let as_given = of(&vec![0.0; nominal.len()]);
@@ -219,7 +218,7 @@ fn settled<'a>(
         return as_given;
     }
     let sets = Vec::from(as_given.each_ref().into_array());
-    of(&null(&sets, given)[..nominal.len()])
+    of(&null(&sets, Effects { candidates, taken })[..nominal.len()])
 }
 
 /// The model's own numbers, in their deviations, as all logs have them where nothing is missing.

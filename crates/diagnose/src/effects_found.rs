@@ -59,9 +59,6 @@ pub struct FoundEffect {
     pub(super) trained: f64,
     /// The same in held-out logs.
     pub(super) judged: f64,
-    /// What opens again without it of logs for training where that is most, as a share of the
-    /// torque: the model's own numbers take up the rest.
-    pub(super) opens: f64,
     /// The share of what can be explained that is open again without it, on held-out logs.
     pub share: f64,
     /// By how much more likely held-out logs are with it, as those that were fitted have it: a log
@@ -88,11 +85,17 @@ pub struct FoundEffect {
 impl FoundEffect {
     /// Whether logs that its values were not fitted to do not ask for it, though it acts there; or
     /// those that they were fitted to ask for nothing of it, so that the others alone show it.
-    pub(super) fn is_idle(&self) -> bool {
+    fn is_idle(&self) -> bool {
         let acts = self.judged > policy::WORTH;
         let least = if acts { policy::NAMED } else { -policy::NAMED };
         self.log_predicted < least || self.trained < policy::WORTH
     }
+}
+
+/// The effect that held-out logs ask for least of those that are idle.
+pub(super) fn idle(effects: &[FoundEffect]) -> Option<usize> {
+    let idle = (0..effects.len()).filter(|&place| effects[place].is_idle());
+    idle.min_by(|&a, &b| effects[a].log_predicted.total_cmp(&effects[b].log_predicted))
 }
 
 /// An effect that the model has.
@@ -136,7 +139,6 @@ pub(super) fn found_effects(
             size: search.size(all, place),
             trained: search.weighing.size(taken),
             judged: judging.size(taken),
-            opens: most_between(setting, [&reopened, after]),
             share: (gap(&reopened) - gap(after)) / whole,
             log_predicted: predicted - setting.log_predicted(&judging, &reopened),
             change_in_time: search.change_in_time(all, place),
@@ -150,15 +152,6 @@ pub(super) fn found_effects(
         }
     };
     (0..all.parts.len()).map(of).collect()
-}
-
-/// What one state leaves beyond another of logs for training, as a share of the torque, where that
-/// is most.
-fn most_between(setting: &Setting<'_>, states: [&State; 2]) -> f64 {
-    let gap = |state: &State| Gap::new(setting.data.train, &state.residual.train).per_joint;
-    let [more, less] = states.map(gap);
-    let both = more.iter().zip(&less).filter_map(|(more, less)| more.zip(*less));
-    both.map(|(more, less)| (more * more - less * less).max(0.0).sqrt()).fold(0.0, f64::max)
 }
 
 /// What else would do in a place.

@@ -90,7 +90,7 @@ fn is_law(diagnosis: &Diagnosis, setting: &Setting<'_>, one: &FoundEffect) -> bo
         let floor = diagnosis.train.floor.per_joint[left.equation].unwrap_or(0.0);
         left.share < floor && one.log_predicted > policy::NAMED
     };
-    let stands = left.is_none_or(|left| !is_unexplained(left, one.opens) || is_noise(left));
+    let stands = left.is_none_or(|left| !is_unexplained(left, one.size) || is_noise(left));
     stands && !changes && one.stands_for.is_none()
 }
 
@@ -120,7 +120,7 @@ fn unexplained<'d>(diagnosis: &'d Diagnosis, setting: &Setting<'_>) -> Option<&'
     // what explains one joint excuses nothing at another
     let unexplained = diagnosis.leftovers.iter().filter(|left| {
         let there = diagnosis.effects.iter().filter(|one| acts_at(setting, one, left));
-        is_unexplained(left, there.map(|one| one.opens).fold(0.0, f64::max))
+        is_unexplained(left, there.map(|one| one.size).fold(0.0, f64::max))
     });
     unexplained.max_by(|a, b| a.share.total_cmp(&b.share))
 }

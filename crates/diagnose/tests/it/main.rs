@@ -7,6 +7,7 @@ mod elastic;
 mod laws;
 mod motion;
 mod one_joint;
+mod rests;
 mod saturation;
 mod search;
 mod separate;

@@ -47,12 +47,16 @@ fn time_unit(log: &MeasuredLog, found: &mut Findings) {
             step if step >= 50.0 => 1e-6,
             _ => 1e-3,
         };
-        found.suspicions.push(Suspicion::TimeUnit { step: log.step_s, factor, source: None });
+        found.suspicions.push(Suspicion::TimeUnit {
+            step: log.step_s,
+            factor,
+            mapped: String::new(),
+        });
     } else if log.step_s < FASTEST_STEP_S {
         found.suspicions.push(Suspicion::TimeUnit {
             step: log.step_s,
             factor: HOUR_S,
-            source: None,
+            mapped: String::new(),
         });
     }
 }
@@ -77,7 +81,12 @@ fn position(signals: &JointSignals, joint: &RegressionJoint, found: &mut Finding
     let reach = limits.map(|[least, most]| 1.5 * least.abs().max(most.abs()));
     if !joint.slides && largest > reach.map_or(LARGEST_ANGLE_RAD, |reach| reach.max(6.0)) {
         let (column, factor) = (column.clone(), 1.0_f64.to_radians());
-        found.suspicions.push(Suspicion::Degrees { column, largest, factor, source: None });
+        found.suspicions.push(Suspicion::Degrees {
+            column,
+            largest,
+            factor,
+            mapped: String::new(),
+        });
     } else if let Some(limits) = limits {
         let slack = 0.02 * (limits[1] - limits[0]);
         let is_below = low < limits[0] - slack;

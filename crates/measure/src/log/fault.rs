@@ -52,10 +52,10 @@ pub enum LogFault {
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)] // the fields are what the messages name
 pub enum Suspicion {
-    /// The time seems to count milliseconds or microseconds; holds its column, if mapped.
-    TimeUnit { step: f64, factor: f64, source: Option<String> },
+    /// The time seems to count milliseconds or microseconds; holds what a mapping says already.
+    TimeUnit { step: f64, factor: f64, mapped: String },
     /// A position seems to be in degrees; holds what brings the column to radians.
-    Degrees { column: String, largest: f64, factor: f64, source: Option<String> },
+    Degrees { column: String, largest: f64, factor: f64, mapped: String },
     /// A logged rate is another multiple of the derivative of its position.
     RateScale { column: String, ratio: f64 },
     /// A logged rate is not the derivative of its position.
@@ -78,14 +78,14 @@ pub enum Suspicion {
 impl Suspicion {
     /// With factors of what stands in the log, whose columns have been scaled already, and where
     /// it stands.
-    pub(super) fn of_log(mut self, of: impl Fn(&str) -> (f64, Option<String>)) -> Self {
-        let (column, factor, source) = match &mut self {
-            Self::TimeUnit { factor, source, .. } => ("t", factor, source),
-            Self::Degrees { column, factor, source, .. } => (column.as_str(), factor, source),
+    pub(super) fn of_log(mut self, of: impl Fn(&str) -> (f64, String)) -> Self {
+        let (column, factor, mapped) = match &mut self {
+            Self::TimeUnit { factor, mapped, .. } => ("t", factor, mapped),
+            Self::Degrees { column, factor, mapped, .. } => (column.as_str(), factor, mapped),
             _ => return self,
         };
-        let (scale, name) = of(column);
-        (*factor, *source) = (*factor * scale, name);
+        let (scale, given) = of(column);
+        (*factor, *mapped) = (*factor * scale, given);
         self
     }
 
@@ -245,20 +245,14 @@ impl fmt::Display for LogFault {
     }
 }
 
-/// What a mapping keeps of a column that it has by another name.
-fn of_column(source: &Option<String>) -> String {
-    source.as_ref().map_or_else(String::new, |name| format!("\"column\": {name:?}, "))
-}
-
 impl fmt::Display for Suspicion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::TimeUnit { step, factor, source } => write!(
+            Self::TimeUnit { step, factor, mapped } => write!(
                 f,
                 "a step of `t` is {}, as if it did not count seconds\n  hint: map it: {{\"t\": \
-                 {{{}\"scale\": {factor}}}}}{}",
+                 {{{mapped}\"scale\": {factor}}}}}{}",
                 short(*step),
-                of_column(source),
                 match step {
                     _ if *factor > 1.0 =>
                         " if it counts hours, {\"t\": {\"scale\": 86400}} if days",
@@ -269,11 +263,10 @@ impl fmt::Display for Suspicion {
                     _ => "",
                 }
             )?,
-            Self::Degrees { column, largest, factor, source } => write!(
+            Self::Degrees { column, largest, factor, mapped } => write!(
                 f,
                 "`{column}` goes to {largest:.4}, as if it were in degrees\n  hint: map it: \
-                 {{\"{column}\": {{{}\"scale\": {factor}}}}}",
-                of_column(source)
+                 {{\"{column}\": {{{mapped}\"scale\": {factor}}}}}"
             )?,
             Self::RateScale { column, ratio } => write!(
                 f,

@@ -42,11 +42,13 @@ pub(super) struct Wanted {
 }
 
 impl Wanted {
-    /// What the numbers of a column were multiplied by, and its name in the log if it is another.
-    pub(super) fn mapped(&self, name: &str, logged: &[String]) -> (f64, Option<String>) {
+    /// What the numbers of a column were multiplied by, and the entry of a mapping that keeps its
+    /// name in the log, if that is another.
+    pub(super) fn mapped(&self, name: &str, logged: &[String]) -> (f64, String) {
         let own = self.columns.iter().find(|column| column.name == name);
-        own.map_or((1.0, None), |own| {
-            (own.scale, Some(logged[own.place].clone()).filter(|logged| logged != name))
+        own.map_or((1.0, String::new()), |own| match &logged[own.place] {
+            logged if logged == name => (own.scale, String::new()),
+            logged => (own.scale, format!("\"column\": {logged:?}, ")),
         })
     }
 }

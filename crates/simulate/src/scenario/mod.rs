@@ -83,7 +83,7 @@ pub struct Scenario {
     /// The largest speed of each joint, where its model states one [rad/s, m/s].
     pub speed_limits: Vec<Option<f64>>,
     /// Effects of its model on what is logged, with their places: no run has them.
-    pub of_logs: Vec<String>,
+    of_logs: Vec<String>,
     /// What drives it.
     pub control: Control,
     /// Where it starts.
@@ -104,6 +104,14 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// What no run of it has, in words.
+    pub fn notes(&self) -> Vec<String> {
+        let note = |effect: &String| {
+            format!("remark: effect {effect} acts on what is logged: the run is without it")
+        };
+        self.of_logs.iter().map(note).collect()
+    }
+
     /// Runs it by its scheme; the log's header says what it was made of.
     pub fn run(&mut self) -> Result<Run, ScenarioError> {
         self.run_told(&mut |_| true)

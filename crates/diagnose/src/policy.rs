@@ -177,8 +177,8 @@ pub(crate) mod verdict {
     /// The share of squares that are left which counts, below which most of it tells nothing.
     pub(crate) const UNTOLD: f64 = 0.5;
 
-    /// Weight and inertia over the torque, from where on it is a small difference: errors of a tenth
-    /// are a third of it. A free pendulum that is steered has 4 to 6, an arm 1.
+    /// Weight and inertia over the torque, from where on it is a small difference: errors of a
+    /// tenth are a third of it. A free pendulum that is steered has 4 to 6, an arm 1.
     pub(crate) const CANCELLED: f64 = 3.0;
 }
 

@@ -22,7 +22,7 @@ pub use misreading::{ExchangedColumns, Misreading};
 pub use weigh::GivenValues;
 
 use crate::estimate::noise_of_positions;
-use denavit_evidence::policy::{NOTHING_LIKE, SAME};
+use denavit_evidence::policy::{LEFT_OF_EXPLAINED, NOTHING_LIKE};
 use denavit_measure::JointIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_measure::log::ColumnMapping;
@@ -172,9 +172,10 @@ fn misread_alike(
         let after = search.left(&reading);
         let left_by_estimate = of_changed([&before.1, &after.1]);
         let left_by_model = before.0.zip(after.0).map(|both| of_changed([&both.0, &both.1]));
-        // laws of friction are no better than a tenth, and what they lack is like a delay
-        let [before, after] = left_by_estimate.map(|left| left * left);
-        let is_law = found.misreading.is_late() && before - after < SAME * SAME;
+        // what a law of friction lacks is like a delay, which leaves much
+        let [before, after] = left_by_estimate;
+        let explained = (before * before - after * after).max(0.0).sqrt();
+        let is_law = found.misreading.is_late() && after > LEFT_OF_EXPLAINED * explained;
         all.push(MisreadColumns {
             misreading: found.misreading,
             log_odds: found.log_odds,

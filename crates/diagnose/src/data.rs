@@ -79,7 +79,7 @@ pub(super) struct ModelTorques {
 }
 
 impl<'a> Data<'a> {
-    /// The rows of logs. What friction may be while a drive rests or turns around is told with z.
+    /// The rows of logs. Friction while a drive rests or turns around is that by z.
     pub(super) fn new(nominal: &'a Nominal<'a>, mut signals: Vec<Signals>, z: &[f64]) -> Self {
         let joints = nominal.model.joints.len();
         let (given, directions) = (nominal.phi(&vec![0.0; nominal.len()]), nominal.directions());

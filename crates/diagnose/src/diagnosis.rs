@@ -146,7 +146,7 @@ pub fn diagnose(
     let read = |logs: Vec<MeasuredLog>| conditioned(logs, filters);
     let logs = Split { train: read(request.train)?, held_out: read(request.held_out)? };
     let nominal = nominal.moving_as(&logs.train);
-    let data = settled(&nominal, &logs, request.candidates, &request.given);
+    let data = with_rests(&nominal, &logs, request.candidates, &request.given);
     let floors = data.each_ref().map(|data| floors(&nominal, &data.signals));
     let setting = Setting {
         data: data.each_ref(),
@@ -204,9 +204,9 @@ pub fn diagnose(
     Ok(diagnosis)
 }
 
-/// The rows of logs. Whether a drive at rest needs more than it slides with is told by the weight
-/// of its bodies: by the numbers that all logs have, not by those of the model.
-fn settled<'a>(
+/// The rows of logs. Whether a drive at rest needs more than it slides with depends on the weight
+/// of its bodies: that by the numbers of all logs, and not by those of the model file.
+fn with_rests<'a>(
     nominal: &'a Nominal<'a>,
     logs: &Split<Vec<Signals>>,
     candidates: &[Candidate],

@@ -178,7 +178,7 @@ pub(crate) mod verdict {
     pub(crate) const UNTOLD: f64 = 0.5;
 
     /// Weight and inertia over the torque, from where on it is a small difference: errors of a
-    /// tenth are a third of it. A free pendulum that is steered has 4 to 6, an arm 1.
+    /// tenth are a third of it. It is put between pendulums of 2.2 and of 4 to 6; arms have 1.
     pub(crate) const CANCELLED: f64 = 3.0;
 }
 

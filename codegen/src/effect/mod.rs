@@ -75,6 +75,8 @@ impl EffectKind {
 /// judged by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Occurrence {
+    /// Of every drive: the dynamic model that robots are identified with has it.
+    Standard,
     /// Of most robots somebody would ask for it.
     #[default]
     Common,
@@ -86,7 +88,7 @@ pub enum Occurrence {
 
 impl Occurrence {
     /// The words, in the order of files.
-    pub const ALL: [Self; 3] = [Self::Common, Self::Uncommon, Self::Rare];
+    pub const ALL: [Self; 4] = [Self::Standard, Self::Common, Self::Uncommon, Self::Rare];
 }
 
 /// Where an effect can act.

@@ -57,8 +57,11 @@ const SITES: Word<'_, EffectSite> = Word {
     ],
 };
 
-const OCCURRENCES: Word<'_, Occurrence> =
-    Word { what: "occurrence", known: &["common", "uncommon", "rare"], values: &Occurrence::ALL };
+const OCCURRENCES: Word<'_, Occurrence> = Word {
+    what: "occurrence",
+    known: &["standard", "common", "uncommon", "rare"],
+    values: &Occurrence::ALL,
+};
 
 const SIDES: Word<'_, SpringSide> = Word {
     what: "side of a series spring",

@@ -120,17 +120,26 @@ impl Search<'_> {
         let count = now.parts.len();
         let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
         for (a, b) in pairs.filter(|&(a, b)| of(a).at == of(b).at && is_asked(of(a))) {
-            if !unmerged.insert([a, b].map(|place| now.parts[place].placed.candidate)) {
+            let both = [a, b].map(|place| now.parts[place].placed.candidate);
+            if !unmerged.insert(both) {
                 continue;
             }
             let mut others = now.parts.clone();
             others.remove(b);
             others.remove(a);
             let rest = self.weighed(others.clone(), Some(now), policy::ROUNDS[0]);
-            let is_there = |candidate: usize| self.weighing.candidates[candidate].at == of(a).at;
+            let is_there = |candidate: usize| {
+                self.weighing.candidates[candidate].at == of(a).at && !both.contains(&candidate)
+            };
             let all = self.with_one_more(&rest, &others, &is_there, None);
             let best = all.iter().find(|one| self.is_worth(&rest, one, one.parts.len() - 1));
-            if let Some(best) = best.filter(|one| one.posterior > now.posterior) {
+            // two that are met more often are plainer than one
+            let is_better = |one: &&Hypothesis| {
+                let own = self.candidate(one, one.parts.len() - 1).occurrence;
+                let is_rarer = own > of(a).occurrence.max(of(b).occurrence);
+                one.posterior > now.posterior + if is_rarer { policy::NAMED } else { 0.0 }
+            };
+            if let Some(best) = best.filter(is_better) {
                 let next = self.plainest(best, best.parts.len() - 1, all.iter());
                 return Some(self.settled(next.parts.clone(), Some(next)));
             }

@@ -26,6 +26,7 @@ use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
 use denavit_plants::trajectory::Reference;
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 
 /// Length of a lap \[s\].
 const LAP_S: f64 = 10.0;
@@ -245,7 +246,8 @@ impl Ambiguity<'_> {
         let effects = Effects { candidates: self.candidates, taken: &[] };
         let weighing = Weighing::new(vec![&data], effects, self.z);
         let names = self.names.iter().map(|one| weighing.part(one)).collect();
-        let search = Search { weighing, screen: Vec::new(), log_choices: 0.0, most: 0 };
+        let exacting = BTreeSet::new();
+        let search = Search { weighing, screen: Vec::new(), log_choices: 0.0, most: 0, exacting };
         Some(asked(&mut Seen { search, data: &data, names, floor: self.floor }))
     }
 }

@@ -98,6 +98,19 @@ impl Search<'_> {
         Some(self.settled(chosen.parts.clone(), Some(&chosen)))
     }
 
+    /// What was found, with laws told apart where an effect is, however little they differ: a plain
+    /// one may not predict the other logs there. Whether that names others.
+    pub(super) fn tell_apart(&mut self, found: &mut Found, place: usize) -> bool {
+        let is_new = self.exacting.insert(self.candidate(&found.after, place).at.clone());
+        let exchanged = || self.exchanged(found.after.clone(), &|_| true, &mut BTreeSet::new());
+        let Some((after, rivals)) = is_new.then(exchanged) else { return false };
+        let are_others = after.names() != found.after.names();
+        if are_others {
+            (found.after, found.rivals) = (after, rivals);
+        }
+        are_others
+    }
+
     /// What was found without the effect in one place, which is no candidate any more. Others are
     /// exchanged, and none is added: what did not repeat is like many an effect.
     pub(super) fn drop(&mut self, found: &mut Found, place: usize) {
@@ -118,7 +131,8 @@ impl Search<'_> {
         let z = &now.weighed.own[..sets[0].columns.len()];
         let other = Weighing::new(sets.clone(), effects, z);
         let parts = now.parts.iter().map(|part| other.part(&part.placed)).collect();
-        let other = Self { weighing: other, screen: Vec::new(), ..*self };
+        let exacting = self.exacting.clone();
+        let other = Self { weighing: other, screen: Vec::new(), exacting, ..*self };
         let moved = other.settled(parts, Some(now));
         let gain = moved.weighed.log_evidence - now.weighed.log_evidence;
         (gain > policy::NAMED).then(|| z.to_vec())

@@ -6,6 +6,7 @@ use super::hypothesis::{Hypothesis, Part};
 use super::weighing::{Placed, Weighing, add};
 use denavit_codegen::effect::Occurrence;
 use denavit_evidence::{Glance, Terms, policy};
+use std::collections::BTreeSet;
 
 /// One step of a search, for a report.
 #[derive(Clone, Debug)]
@@ -31,12 +32,14 @@ pub(super) struct Search<'a> {
     pub(super) log_choices: f64,
     /// Most effects that are added.
     pub(super) most: usize,
+    /// Places where laws are told apart, however little they differ.
+    pub(super) exacting: BTreeSet<String>,
 }
 
 /// The log odds of an effect before any log is looked at.
 fn log_occurrence(candidate: &Candidate) -> f64 {
     match candidate.occurrence {
-        Occurrence::Common => 0.0,
+        Occurrence::Standard | Occurrence::Common => 0.0,
         Occurrence::Uncommon => policy::UNCOMMON,
         Occurrence::Rare => policy::RARE,
     }
@@ -67,7 +70,7 @@ impl<'a> Search<'a> {
         }
         let weights = candidates.iter().skip(given).map(|one| log_occurrence(one).exp());
         let log_choices = weights.sum::<f64>().max(1.0).ln();
-        Self { weighing, screen, log_choices, most }
+        Self { weighing, screen, log_choices, most, exacting: BTreeSet::new() }
     }
 
     /// The step to the best of some hypotheses.
@@ -96,15 +99,20 @@ impl<'a> Search<'a> {
     }
 
     /// Of hypotheses that have another effect in one place: the best of those that are plainer than
-    /// the one given, or else that one.
+    /// the one given, and of those plainer than that, and so on; or else the one given.
     pub(super) fn plainest<'h>(
         &self,
         best: &'h Hypothesis,
         place: usize,
         all: impl Iterator<Item = &'h Hypothesis>,
     ) -> &'h Hypothesis {
-        let plain = all.filter(|one| self.is_plainer(one, best, place));
-        plain.max_by(|a, b| a.posterior.total_cmp(&b.posterior)).unwrap_or(best)
+        let (mut chosen, mut plain): (_, Vec<_>) = (best, all.collect());
+        loop {
+            plain.retain(|one| self.is_plainer(one, chosen, place));
+            let next = plain.iter().max_by(|a, b| a.posterior.total_cmp(&b.posterior));
+            let Some(next) = next else { return chosen };
+            chosen = next;
+        }
     }
 
     /// Whether an effect in a place is plainer than that of another hypothesis, and as good.
@@ -112,14 +120,31 @@ impl<'a> Search<'a> {
         let [own, other] = [one, than].map(|of| self.candidate(of, place));
         let is_as_good = own.at == other.at && one.posterior > than.posterior - policy::NAMED;
         let is_met_more_often = own.occurrence < other.occurrence;
+        let [parameters, others] = [own, other].map(|of| of.law.parameters().len());
         own.is_plainer_than(other)
-            && (is_as_good || is_met_more_often && self.is_same(one, than, place))
+            && (is_as_good
+                || is_met_more_often && parameters <= others && self.is_same(one, than, place))
     }
 
-    /// Whether an effect leaves hardly more than that of another hypothesis in the same place.
+    /// Whether an effect leaves hardly more than that of another hypothesis in the same place, of
+    /// what all effects do there and of what the other one does, without moving the model's own
+    /// numbers for it.
     fn is_same(&self, one: &Hypothesis, than: &Hypothesis, place: usize) -> bool {
         let [own, other] = [one, than].map(|of| self.candidate(of, place));
-        own.at == other.at && self.apart(than, one) < policy::SAME * self.told(than, place)
+        if own.at != other.at || self.exacting.contains(&own.at) {
+            return false;
+        }
+        let mut all = than.torque(place);
+        for at in (0..than.parts.len()).filter(|&at| at != place) {
+            if self.candidate(than, at).at == own.at {
+                add(&mut all, &than.torque(at), 1.0);
+            }
+        }
+        let moved = |of: &Hypothesis| 0.5 * of.weighed.own.iter().map(|z| z * z).sum::<f64>();
+        let apart = self.apart(than, one);
+        apart < policy::SAME * self.weighing.spectra.largest_share(&all)
+            && apart < policy::LEFT_OF_EXPLAINED * self.told(than, place)
+            && moved(one) - moved(than) < policy::NAMED
     }
 
     pub(super) fn candidate(&self, hypothesis: &Hypothesis, place: usize) -> &Candidate {

@@ -3,6 +3,7 @@
 use super::hypothesis::{Hypothesis, Part};
 use super::search::Search;
 use crate::policy::worth::RANK;
+use denavit_codegen::effect::Occurrence;
 use denavit_evidence::policy;
 use nalgebra::{DMatrix, DVector};
 
@@ -16,7 +17,9 @@ impl Search<'_> {
         let most = others.map(|at| self.size(without, at)).fold(0.0, f64::max);
         let size = self.size(with, place);
         let own = || size * self.beyond(with, place) / self.told(with, place);
-        size > policy::WORTH && (most == 0.0 || own() > policy::SAME * most)
+        // what every drive has is no excuse for the errors of a law
+        let is_standard = self.candidate(with, place).occurrence == Occurrence::Standard;
+        size > policy::WORTH && (is_standard || most == 0.0 || own() > policy::SAME * most)
     }
 
     /// What an effect does that others of its hypothesis cannot, as a share of the torque where

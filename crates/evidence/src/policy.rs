@@ -72,9 +72,10 @@ pub const NAMED: f64 = 4.6;
 /// The least share of its joint's torque that is worth a name.
 pub const WORTH: f64 = 3e-3;
 
-/// Two laws of one place that differ by less than this share of what they do are one to a
-/// user: the one that is met more often is named. Laws of friction are not better than that, so a
-/// further effect of a joint that is smaller than this share of the largest one has no name.
+/// Two laws of one place that differ by less than this share of what all effects do there are one
+/// to a user: the one that is met more often is named. Laws of friction are not better than that, so
+/// a further effect of a joint that is smaller than this share of the largest one has no name,
+/// unless every drive has it.
 pub const SAME: f64 = 0.1;
 
 /// A rival within these log odds of what is named is reported beside it: less than what a name asks
@@ -106,9 +107,6 @@ pub const SIDE: [f64; 2] = [0.306_852_819_440_054_7, 1.147_874_464_449_318_4];
 /// What remains of the belief in small factors in a second first look: large effects are seen
 /// beside the noise that they leave.
 pub const UNBELIEVED: f64 = 1e-3;
-
-/// Pairs of effects that are weighed whole after the first look.
-pub const PAIRS: usize = 3;
 
 /// Rounds in which variances are found, of candidates and of what is reported.
 pub const ROUNDS: [usize; 2] = [8, 25];

@@ -134,12 +134,10 @@ impl Search<'_> {
             let all = self.with_one_more(&rest, &others, &is_there, None);
             let best = all.iter().find(|one| self.is_worth(&rest, one, one.parts.len() - 1));
             // two that are met more often are plainer than one
-            let is_better = |one: &&Hypothesis| {
-                let own = self.candidate(one, one.parts.len() - 1).occurrence;
-                let is_rarer = own > of(a).occurrence.max(of(b).occurrence);
-                one.posterior > now.posterior + if is_rarer { policy::NAMED } else { 0.0 }
-            };
-            if let Some(best) = best.filter(is_better) {
+            let met = |one: &Hypothesis| self.candidate(one, one.parts.len() - 1).occurrence;
+            let is_rarer = |one: &Hypothesis| met(one) > of(a).occurrence.max(of(b).occurrence);
+            let least = |one: &Hypothesis| if is_rarer(one) { policy::NAMED } else { 0.0 };
+            if let Some(best) = best.filter(|one| one.posterior > now.posterior + least(one)) {
                 let next = self.plainest(best, best.parts.len() - 1, all.iter());
                 return Some(self.settled(next.parts.clone(), Some(next)));
             }

@@ -26,7 +26,6 @@ use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
 use denavit_plants::trajectory::Reference;
 use serde_json::{Value, json};
-use std::collections::BTreeSet;
 
 /// Length of a lap \[s\].
 const LAP_S: f64 = 10.0;
@@ -246,8 +245,7 @@ impl Ambiguity<'_> {
         let effects = Effects { candidates: self.candidates, taken: &[] };
         let weighing = Weighing::new(vec![&data], effects, self.z);
         let names = self.names.iter().map(|one| weighing.part(one)).collect();
-        let exacting = BTreeSet::new();
-        let search = Search { weighing, screen: Vec::new(), log_choices: 0.0, most: 0, exacting };
+        let search = Search::new(weighing, self.candidates.len(), 0, &mut |_| true);
         Some(asked(&mut Seen { search, data: &data, names, floor: self.floor }))
     }
 }

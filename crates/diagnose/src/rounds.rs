@@ -98,22 +98,19 @@ impl Search<'_> {
         Some(self.settled(chosen.parts.clone(), Some(&chosen)))
     }
 
-    /// What was found, with laws told apart where an effect is, however little they differ: a plain
-    /// one may not predict the other logs there. Whether that names others.
-    pub(super) fn tell_apart(&mut self, found: &mut Found, place: usize) -> bool {
-        let is_new = self.exacting.insert(self.candidate(&found.after, place).at.clone());
-        let exchanged = || self.exchanged(found.after.clone(), &|_| true, &mut BTreeSet::new());
-        let Some((after, rivals)) = is_new.then(exchanged) else { return false };
-        let are_others = after.names() != found.after.names();
-        if are_others {
-            (found.after, found.rivals) = (after, rivals);
-        }
-        are_others
-    }
-
-    /// What was found without the effect in one place, which is no candidate any more. Others are
-    /// exchanged, and none is added: what did not repeat is like many an effect.
+    /// What was found where other logs do not ask for the effect in one place: with laws told apart
+    /// there, however little they differ, since a plain one may not predict; or else without it. It
+    /// is no candidate then. Others are exchanged, and none is added: what did not repeat is like
+    /// many an effect.
     pub(super) fn drop(&mut self, found: &mut Found, place: usize) {
+        if self.exacting.insert(self.candidate(&found.after, place).at.clone()) {
+            let now = found.after.clone();
+            let (after, rivals) = self.exchanged(now, &|_| true, &mut BTreeSet::new());
+            if after.names() != found.after.names() {
+                (found.after, found.rivals) = (after, rivals);
+                return;
+            }
+        }
         let mut parts = found.after.parts.clone();
         let dropped = parts.remove(place).placed.candidate;
         self.screen[dropped].clear();

@@ -119,11 +119,9 @@ impl<'a> Search<'a> {
     pub(super) fn is_plainer(&self, one: &Hypothesis, than: &Hypothesis, place: usize) -> bool {
         let [own, other] = [one, than].map(|of| self.candidate(of, place));
         let is_as_good = own.at == other.at && one.posterior > than.posterior - policy::NAMED;
-        let is_met_more_often = own.occurrence < other.occurrence;
-        let [parameters, others] = [own, other].map(|of| of.law.parameters().len());
-        own.is_plainer_than(other)
-            && (is_as_good
-                || is_met_more_often && parameters <= others && self.is_same(one, than, place))
+        let [count, others] = [own, other].map(|of| of.law.parameters().len());
+        let is_usual = own.occurrence < other.occurrence && count <= others;
+        own.is_plainer_than(other) && (is_as_good || is_usual && self.is_same(one, than, place))
     }
 
     /// Whether an effect leaves hardly more than that of another hypothesis in the same place, of
@@ -135,11 +133,9 @@ impl<'a> Search<'a> {
             return false;
         }
         let mut all = than.torque(place);
-        for at in (0..than.parts.len()).filter(|&at| at != place) {
-            if self.candidate(than, at).at == own.at {
-                add(&mut all, &than.torque(at), 1.0);
-            }
-        }
+        let is_beside = |&at: &usize| at != place && self.candidate(than, at).at == own.at;
+        let others = (0..than.parts.len()).filter(is_beside);
+        others.for_each(|at| add(&mut all, &than.torque(at), 1.0));
         let moved = |of: &Hypothesis| 0.5 * of.weighed.own.iter().map(|z| z * z).sum::<f64>();
         let apart = self.apart(than, one);
         apart < policy::SAME * self.weighing.spectra.largest_share(&all)

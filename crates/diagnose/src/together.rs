@@ -1,12 +1,10 @@
 //! Effects that are added at once, since none of them is seen alone.
 //!
 //! Viscous and Coulomb friction of one drive are both large, and a band of frequencies that one of
-//! them explains the other one fills. Noise is what is left of each band, so that either alone
-//! leaves all bands loud, and is fitted to those that have most lines. A rigid model of a robot
-//! lacks both at every drive, and numbers of bodies that are put right for one joint are wrong for
-//! the others. So all is looked at together that every drive has, which is the dynamic model that
-//! robots are identified with (Gautier, Khalil 1990): all of it is added, and what is not asked for
-//! beside the rest is taken away again.
+//! them explains the other one fills: either alone leaves all bands loud. A rigid model lacks both
+//! at every drive, and bodies that are put right for one joint are wrong for the others. So all that
+//! every drive has is added, which is the model that robots are identified with (Gautier, Khalil
+//! 1990), and what is not asked for beside the rest is taken away again.
 
 use super::hypothesis::{Hypothesis, Part};
 use super::search::{Search, Step};

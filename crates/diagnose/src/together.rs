@@ -2,7 +2,7 @@
 //!
 //! Viscous and Coulomb friction of one drive are both large, and a band of frequencies that one of
 //! them explains the other one fills: either alone leaves all bands loud. A rigid model lacks both
-//! at every drive, and bodies that are put right for one joint are wrong for the others. So all that
+//! at every drive, and bodies that are put right for one joint are wrong for others. So all that
 //! every drive has is added, which is the model that robots are identified with (Gautier, Khalil
 //! 1990), and what is not asked for beside the rest is taken away again.
 

@@ -73,9 +73,9 @@ pub const NAMED: f64 = 4.6;
 pub const WORTH: f64 = 3e-3;
 
 /// Two laws of one place that differ by less than this share of what all effects do there are one
-/// to a user: the one that is met more often is named. Laws of friction are not better, so a further
-/// effect that is smaller than this share of its joint's largest one has no name, unless every
-/// drive has it.
+/// to a user: the one met more often is named. Laws of friction are not better, so a further effect
+/// that is smaller than this share of its joint's largest one has no name, unless every drive has
+/// it.
 pub const SAME: f64 = 0.1;
 
 /// A rival within these log odds of what is named is reported beside it: less than what a name asks

@@ -180,7 +180,7 @@ pub fn diagnose(
         let after = setting.state(&found.after.parts, &z);
         let effects = found_effects(&setting, &search, &found, &before, &after);
         let Some(place) = idle(&effects) else { break (after, effects) };
-        search.drop(&mut found, place);
+        search.replace_or_drop(&mut found, place);
     };
     if let Some(aliases) = request.aliases {
         tell_aliases(request.candidates, aliases, &mut effects);

@@ -102,7 +102,7 @@ impl Search<'_> {
     /// there, however little they differ, since a plain one may not predict; or else without it. It
     /// is no candidate then. Others are exchanged, and none is added: what did not repeat is like
     /// many an effect.
-    pub(super) fn drop(&mut self, found: &mut Found, place: usize) {
+    pub(super) fn replace_or_drop(&mut self, found: &mut Found, place: usize) {
         if self.exacting.insert(self.candidate(&found.after, place).at.clone()) {
             let now = found.after.clone();
             let (after, rivals) = self.exchanged(now, &|_| true, &mut BTreeSet::new());

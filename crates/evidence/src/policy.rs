@@ -120,7 +120,7 @@ pub const LINEARISED: usize = 8;
 pub const FLAT: f64 = 1.5;
 /// See [`FLAT`].
 pub const LEFT: f64 = 8e-3;
-/// See [`FLAT`].
+/// See [`FLAT`]. A plain law may leave that share of what a finer one does.
 pub const LEFT_OF_EXPLAINED: f64 = 0.35;
 
 /// The prior of how far an effect changes in the course of a log, as a share of itself, where it

@@ -21,6 +21,7 @@ const ARM: &str = r#"{
 const MASS: f64 = 2.2;
 const COULOMB: f64 = 0.5;
 const MOVE_S: f64 = 0.8;
+/// Longer than the filter of the torques rings.
 const REST_S: f64 = 0.9;
 
 /// Places in turn, as if drawn.

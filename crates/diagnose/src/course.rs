@@ -7,7 +7,7 @@
 //! to what is there. That is the test of Chow (1960) for constant parameters, as evidence.
 
 use super::data::RowResponse;
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{Hypothesis, Part};
 use super::search::Search;
 use super::state::Taken;
 use denavit_evidence::{Spectrum, Terms, policy};
@@ -31,18 +31,20 @@ impl Search<'_> {
             believed: vec![0.0; count],
             ..Terms::default()
         };
-        let own = found.parts.iter().map(|part| &part.terms);
-        let with = |terms: &[&Terms]| {
-            let start = Some(found.weighed.variances.as_slice());
-            self.weighing.base.weigh(terms, start, policy::ROUNDS[1])
-        };
-        let terms: Vec<&Terms> = own.chain([&changing]).collect();
-        let (constant, changes) = (with(&terms[..terms.len() - 1]), with(&terms));
-        let odds = changes.log_evidence - constant.log_evidence + policy::UNCOMMON;
-        let factors = &changes.factors[changes.factors.len() - count..];
+        let with = |parts: Vec<Part>| self.weighed(parts, Some(found), policy::ROUNDS[1]);
+        let own = Part { terms: changing, ..found.parts[place].clone() };
+        let constant = with(found.parts.clone());
+        let changes = with([&found.parts[..], &[own]].concat());
+        let odds = changes.weighed.log_evidence - constant.weighed.log_evidence + policy::UNCOMMON;
+        let factors = &changes.weighed.factors[changes.weighed.factors.len() - count..];
         let squares: f64 = factors.iter().map(|factor| (policy::CHANGE * factor).powi(2)).sum();
         let change = (squares / count.max(1) as f64).sqrt();
-        (odds > policy::NAMED && change > policy::CHANGED).then_some(change)
+        // a change that is smaller than what is left beside it may be of that
+        let torque = changes.torque(found.parts.len());
+        let share = |channel| self.weighing.spectra.share(&torque, channel);
+        let is_seen =
+            || (0..).zip(self.open(&changes)).any(|(channel, open)| share(channel) > open);
+        (odds > policy::NAMED && change > policy::CHANGED && is_seen()).then_some(change)
     }
 }
 

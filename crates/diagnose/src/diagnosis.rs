@@ -157,11 +157,16 @@ pub fn diagnose(
     let misread = misread(&data.train, &setting.as_given(&data.train));
     let most = if misread.is_empty() { request.most_effects } else { 0 };
     let sets = Vec::from(setting.data.into_array());
+    let both = [(&data.train, &floors.train), (&data.held_out, &floors.held_out)];
+    let [a, b] = both.map(|(data, floors)| Gap::of_floor(data, floors).per_joint);
+    let floor = a.iter().zip(&b).map(|(a, b)| a.unwrap_or(0.0).max(b.unwrap_or(0.0)));
+    let floor: Vec<f64> = floor.collect();
     let own = setting.effects(&setting.given);
     let mut searched = |z: &[f64], begun: &[Placed], may_move: bool| {
         let weighing = Weighing::new(sets.clone(), own, z);
         let watched = &mut |share| watch(&Progress::Evaluated(share));
-        let search = Search::new(weighing, setting.given.len(), most, watched);
+        let mut search = Search::new(weighing, setting.given.len(), most, watched);
+        search.floor.clone_from(&floor);
         let watch = &mut |taken: &[usize]| watch(&Progress::Found(taken.to_vec()));
         let found = search.run(begun, may_move, watch);
         (search, found)
@@ -179,8 +184,24 @@ pub fn diagnose(
     let (after, mut effects) = loop {
         let after = setting.state(&found.after.parts, &z);
         let effects = found_effects(&setting, &search, &found, &before, &after);
-        let Some(place) = idle(&effects) else { break (after, effects) };
-        search.replace_or_drop(&mut found, place);
+        for one in &effects {
+            eprintln!(
+                "  EFF {} lp {:.1} judged {:.3} trained {:.3} {:?} all {:?}",
+                setting.candidates[one.candidate].name(),
+                one.log_predicted,
+                one.judged,
+                one.trained,
+                one.parameters.iter().map(|p| (p.value, p.std)).collect::<Vec<_>>(),
+                found
+                    .after
+                    .parts
+                    .iter()
+                    .position(|p| p.placed.candidate == one.candidate)
+                    .map(|p| found.after.values(p))
+            );
+        }
+        let Some(place) = idle(&effects, setting.candidates) else { break (after, effects) };
+        search.drop(&mut found, place);
     };
     if let Some(aliases) = request.aliases {
         tell_aliases(request.candidates, aliases, &mut effects);
@@ -189,7 +210,7 @@ pub fn diagnose(
         separate(&setting, asked, (&found, &after), filters, &mut effects);
     }
     let states = [&before, &after];
-    let leftovers = leftovers(&search.weighing.spectra, &found.after);
+    let leftovers = leftovers(&search.weighing.spectra, &found.after.weighed.variances);
     search.tell_stand_ins(&found.after, &leftovers, &mut effects);
     let unnamed = leftovers.iter().filter(|one| one.share > policy::LEFT);
     let mut diagnosis = Diagnosis {

@@ -14,6 +14,7 @@ use super::signals::Filters;
 use super::state::{MOST_Z, Setting, State};
 use super::weighing::Placed;
 use denavit_codegen::alias::{ExactAliases, Named};
+use denavit_codegen::effect::Occurrence;
 use denavit_codegen::model::Robot;
 use denavit_evidence::policy;
 use denavit_plants::effect::LawParameter;
@@ -83,18 +84,20 @@ pub struct FoundEffect {
 }
 
 impl FoundEffect {
-    /// Whether logs that its values were not fitted to do not ask for it, though it acts there; or
-    /// those that they were fitted to ask for nothing of it, so that the others alone show it.
-    fn is_idle(&self) -> bool {
+    /// Whether logs that its values were not fitted to speak against it, or do not ask for it
+    /// though it acts there and is none that every drive has; or those that they were fitted to
+    /// ask for nothing of it, so that the others alone show it.
+    fn is_idle(&self, candidates: &[Candidate]) -> bool {
         let acts = self.judged > policy::WORTH;
-        let least = if acts { policy::NAMED } else { -policy::NAMED };
+        let is_standard = candidates[self.candidate].occurrence == Occurrence::Standard;
+        let least = if acts && !is_standard { policy::NAMED } else { -policy::NAMED };
         self.log_predicted < least || self.trained < policy::WORTH
     }
 }
 
 /// The effect that held-out logs ask for least of those that are idle.
-pub(super) fn idle(effects: &[FoundEffect]) -> Option<usize> {
-    let idle = (0..effects.len()).filter(|&place| effects[place].is_idle());
+pub(super) fn idle(effects: &[FoundEffect], candidates: &[Candidate]) -> Option<usize> {
+    let idle = (0..effects.len()).filter(|&place| effects[place].is_idle(candidates));
     idle.min_by(|&a, &b| effects[a].log_predicted.total_cmp(&effects[b].log_predicted))
 }
 
@@ -122,17 +125,14 @@ pub(super) fn found_effects(
     let given = setting.given.len();
     let all = &found.after;
     let judging = setting.judging(&before.z);
-    let predicted = setting.log_predicted(&judging, after);
+    let predicted = setting.log_predicted(&judging, after, all);
     let of = |place: usize| {
         let mut parts = all.parts.clone();
         parts.remove(place);
         let without = search.settled(parts.clone(), Some(all));
         let taken = &after.taken[given + place];
         let reopened = setting.state(&parts, &before.z);
-        // Another law than what is there has other values in another motion (Chow 1960): errors
-        // have in them how far values by the logs for training are from those by all logs.
-        let by_all = all.values(place);
-        let std = |k: usize| after.deviations[given + place][k].hypot(taken.values[k] - by_all[k]);
+        let errors = setting.errors(after, all, place);
         FoundEffect {
             candidate: taken.candidate,
             log_odds: all.posterior - without.posterior,
@@ -140,11 +140,11 @@ pub(super) fn found_effects(
             trained: search.weighing.size(taken),
             judged: judging.size(taken),
             share: (gap(&reopened) - gap(after)) / whole,
-            log_predicted: predicted - setting.log_predicted(&judging, &reopened),
+            log_predicted: predicted - setting.log_predicted(&judging, &reopened, &without),
             change_in_time: search.change_in_time(all, place),
             stands_for: None,
             is_named: true,
-            parameters: values(setting, after, given + place, std),
+            parameters: values(setting, after, given + place, |k| errors[k]),
             alternatives: alternatives(found, place),
             exact: Vec::new(),
             experiment: None,

@@ -132,13 +132,18 @@ impl Search<'_> {
                 self.weighing.candidates[candidate].at == of(a).at && !both.contains(&candidate)
             };
             let all = self.with_one_more(&rest, &others, &is_there, None);
-            let best = all.iter().find(|one| self.is_worth(&rest, one, one.parts.len() - 1));
+            let last = others.len();
             // two that are met more often are plainer than one
-            let met = |one: &Hypothesis| self.candidate(one, one.parts.len() - 1).occurrence;
-            let is_rarer = |one: &Hypothesis| met(one) > of(a).occurrence.max(of(b).occurrence);
-            let least = |one: &Hypothesis| if is_rarer(one) { policy::NAMED } else { 0.0 };
-            if let Some(best) = best.filter(|one| one.posterior > now.posterior + least(one)) {
-                let next = self.plainest(best, best.parts.len() - 1, all.iter());
+            let is_better = |one: &Hypothesis| {
+                let met = self.candidate(one, last).occurrence;
+                let is_rarer = met > of(a).occurrence.max(of(b).occurrence);
+                let least = if is_rarer { policy::NAMED } else { 0.0 };
+                let is_told = !is_rarer || !self.is_same(now, one, last);
+                one.posterior > now.posterior + least && is_told
+            };
+            let best = all.iter().find(|one| self.is_worth(&rest, one, last));
+            let next = best.map(|best| self.plainest(best, last, all.iter()));
+            if let Some(next) = next.filter(|one| is_better(one)) {
                 return Some(self.settled(next.parts.clone(), Some(next)));
             }
         }

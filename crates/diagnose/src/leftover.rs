@@ -3,7 +3,6 @@
 //! Noise of sensors and of drives is as strong in the bands in which a robot moves as in the ones
 //! above. What has more in the slow ones is a disturbance, or physics without a name.
 
-use super::hypothesis::Hypothesis;
 use super::spectra::Spectra;
 use denavit_evidence::policy;
 
@@ -16,9 +15,10 @@ pub struct Leftover {
     pub share: f64,
 }
 
-/// What each channel has left in slow bands beyond its level in faster ones.
-pub(super) fn leftovers(spectra: &Spectra, hypothesis: &Hypothesis) -> Vec<Leftover> {
-    let mut variances = hypothesis.weighed.variances.iter();
+/// What each channel has left in slow bands beyond its level in faster ones, by the variances of
+/// all cells.
+pub(super) fn leftovers(spectra: &Spectra, variances: &[f64]) -> Vec<Leftover> {
+    let mut variances = variances.iter();
     let of = |(equation, bands): (usize, &Vec<std::ops::Range<usize>>)| {
         let filled = bands.iter().filter(|rows| !rows.is_empty());
         let all: Vec<(f64, f64)> =
@@ -33,4 +33,10 @@ pub(super) fn leftovers(spectra: &Spectra, hypothesis: &Hypothesis) -> Vec<Lefto
         Leftover { equation, share: spectra.share_of_squares(equation, squares.sum()) }
     };
     spectra.layout.bands.iter().enumerate().map(of).collect()
+}
+
+/// Whether what is left, as a share of the torque, is more than sensors have, however even its
+/// spectrum is.
+pub(super) fn is_broad(left: f64, floor: f64) -> bool {
+    left > policy::BROAD && left > policy::BROAD_OF_NOISE * floor
 }

@@ -98,19 +98,9 @@ impl Search<'_> {
         Some(self.settled(chosen.parts.clone(), Some(&chosen)))
     }
 
-    /// What was found where other logs do not ask for the effect in one place: with laws told apart
-    /// there, however little they differ, since a plain one may not predict; or else without it. It
-    /// is no candidate then. Others are exchanged, and none is added: what did not repeat is like
-    /// many an effect.
-    pub(super) fn replace_or_drop(&mut self, found: &mut Found, place: usize) {
-        if self.exacting.insert(self.candidate(&found.after, place).at.clone()) {
-            let now = found.after.clone();
-            let (after, rivals) = self.exchanged(now, &|_| true, &mut BTreeSet::new());
-            if after.names() != found.after.names() {
-                (found.after, found.rivals) = (after, rivals);
-                return;
-            }
-        }
+    /// What was found without the effect in one place, which is no candidate then. Others are
+    /// exchanged, and none is added: what did not repeat is like many an effect.
+    pub(super) fn drop(&mut self, found: &mut Found, place: usize) {
         let mut parts = found.after.parts.clone();
         let dropped = parts.remove(place).placed.candidate;
         self.screen[dropped].clear();
@@ -128,8 +118,8 @@ impl Search<'_> {
         let z = &now.weighed.own[..sets[0].columns.len()];
         let other = Weighing::new(sets.clone(), effects, z);
         let parts = now.parts.iter().map(|part| other.part(&part.placed)).collect();
-        let exacting = self.exacting.clone();
-        let other = Self { weighing: other, screen: Vec::new(), exacting, ..*self };
+        let floor = self.floor.clone();
+        let other = Self { weighing: other, screen: Vec::new(), floor, ..*self };
         let moved = other.settled(parts, Some(now));
         let gain = moved.weighed.log_evidence - now.weighed.log_evidence;
         (gain > policy::NAMED).then(|| z.to_vec())

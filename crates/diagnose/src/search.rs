@@ -3,10 +3,10 @@
 
 use super::candidate::Candidate;
 use super::hypothesis::{Hypothesis, Part};
+use super::leftover::{is_broad, leftovers};
 use super::weighing::{Placed, Weighing, add};
 use denavit_codegen::effect::Occurrence;
 use denavit_evidence::{Glance, Terms, policy};
-use std::collections::BTreeSet;
 
 /// One step of a search, for a report.
 #[derive(Clone, Debug)]
@@ -32,8 +32,8 @@ pub(super) struct Search<'a> {
     pub(super) log_choices: f64,
     /// Most effects that are added.
     pub(super) most: usize,
-    /// Places where laws are told apart, however little they differ.
-    pub(super) exacting: BTreeSet<String>,
+    /// What noise leaves of each channel, as a share of its torque.
+    pub(super) floor: Vec<f64>,
 }
 
 /// The log odds of an effect before any log is looked at.
@@ -70,7 +70,8 @@ impl<'a> Search<'a> {
         }
         let weights = candidates.iter().skip(given).map(|one| log_occurrence(one).exp());
         let log_choices = weights.sum::<f64>().max(1.0).ln();
-        Self { weighing, screen, log_choices, most, exacting: BTreeSet::new() }
+        let floor = vec![0.0; weighing.spectra.torque.len()];
+        Self { weighing, screen, log_choices, most, floor }
     }
 
     /// The step to the best of some hypotheses.
@@ -120,26 +121,25 @@ impl<'a> Search<'a> {
         let [own, other] = [one, than].map(|of| self.candidate(of, place));
         let is_as_good = own.at == other.at && one.posterior > than.posterior - policy::NAMED;
         let [count, others] = [own, other].map(|of| of.law.parameters().len());
-        let is_usual = own.occurrence < other.occurrence && count <= others;
+        let is_usual = own.at == other.at && own.occurrence < other.occurrence && count <= others;
         own.is_plainer_than(other) && (is_as_good || is_usual && self.is_same(one, than, place))
     }
 
-    /// Whether an effect leaves hardly more than that of another hypothesis in the same place, of
-    /// what all effects do there and of what the other one does, without moving the model's own
-    /// numbers for it.
-    fn is_same(&self, one: &Hypothesis, than: &Hypothesis, place: usize) -> bool {
-        let [own, other] = [one, than].map(|of| self.candidate(of, place));
-        if own.at != other.at || self.exacting.contains(&own.at) {
-            return false;
-        }
+    /// Whether a hypothesis leaves hardly more than another one with an effect in one place, of what
+    /// all effects do there or of what the other one leaves that is no noise, and of what that
+    /// effect does, without moving the model's own numbers for it.
+    pub(super) fn is_same(&self, one: &Hypothesis, than: &Hypothesis, place: usize) -> bool {
+        let at = &self.candidate(than, place).at;
         let mut all = than.torque(place);
-        let is_beside = |&at: &usize| at != place && self.candidate(than, at).at == own.at;
+        let is_beside = |&other: &usize| other != place && &self.candidate(than, other).at == at;
         let others = (0..than.parts.len()).filter(is_beside);
         others.for_each(|at| add(&mut all, &than.torque(at), 1.0));
         let moved = |of: &Hypothesis| 0.5 * of.weighed.own.iter().map(|z| z * z).sum::<f64>();
-        let apart = self.apart(than, one);
-        apart < policy::SAME * self.weighing.spectra.largest_share(&all)
-            && apart < policy::LEFT_OF_EXPLAINED * self.told(than, place)
+        let little = policy::SAME * self.weighing.spectra.largest_share(&all);
+        let most = policy::LEFT_OF_EXPLAINED * self.told(than, place);
+        let more = self.left(one).into_iter().zip(self.left(than));
+        let more = more.map(|(one, than)| (one * one - than * than).max(0.0).sqrt());
+        more.zip(self.open(than)).all(|(more, open)| more < little.max(open).min(most))
             && moved(one) - moved(than) < policy::NAMED
     }
 
@@ -151,13 +151,6 @@ impl<'a> Search<'a> {
         &self.weighing.candidates[part.placed.candidate]
     }
 
-    /// How much more a hypothesis leaves than another, as a share of the torque where that is most.
-    fn apart(&self, than: &Hypothesis, other: &Hypothesis) -> f64 {
-        let [a, b] = [than, other].map(|one| self.left(one));
-        let more = a.iter().zip(&b).map(|(a, b)| (b * b - a * a).max(0.0).sqrt());
-        more.fold(0.0, f64::max)
-    }
-
     /// What a hypothesis leaves of each channel, as a share of its torque.
     pub(super) fn left(&self, hypothesis: &Hypothesis) -> Vec<f64> {
         let base = &self.weighing.base;
@@ -166,6 +159,14 @@ impl<'a> Search<'a> {
             add(&mut left, &hypothesis.torque(place), -1.0);
         }
         (0..left.len()).map(|channel| self.weighing.spectra.share(&left, channel)).collect()
+    }
+
+    /// The same of what is no noise.
+    pub(super) fn open(&self, hypothesis: &Hypothesis) -> Vec<f64> {
+        let slow = leftovers(&self.weighing.spectra, &hypothesis.weighed.variances);
+        let all = self.left(hypothesis).into_iter().zip(&self.floor).zip(slow);
+        all.map(|((left, floor), slow)| if is_broad(left, *floor) { left } else { slow.share })
+            .collect()
     }
 
     /// A first look from parts, with the variances of a hypothesis.

@@ -102,14 +102,29 @@ impl<'a> Setting<'a> {
         Weighing::new(vec![self.data.held_out], self.effects(&self.given), z)
     }
 
+    /// The deviations of an effect that was found. Another law than what is there has other values
+    /// in another motion (Chow 1960): errors have in them how far values by the logs for training
+    /// are from those by all logs.
+    pub(super) fn errors(&self, state: &State, by_all: &Hypothesis, place: usize) -> Vec<f64> {
+        let own = self.given.len() + place;
+        let apart = state.taken[own].values.iter().zip(by_all.values(place));
+        let both = state.deviations[own].iter().zip(apart);
+        both.map(|(deviation, (one, other))| deviation.hypot(one - other)).collect()
+    }
+
     /// The log of the evidence of held-out logs with the effects as those that were fitted have
-    /// them. Noise is that of the held-out logs: what changes between logs is no reason to leave
-    /// an effect out.
-    pub(super) fn log_predicted(&self, judging: &Weighing<'_>, state: &State) -> f64 {
-        let found = state.taken.iter().zip(&state.deviations).skip(self.given.len());
-        let terms = found.map(|(taken, deviations)| {
+    /// them, and all logs. Noise is that of the held-out logs: what changes between logs is no
+    /// reason to leave an effect out.
+    pub(super) fn log_predicted(
+        &self,
+        judging: &Weighing<'_>,
+        state: &State,
+        by_all: &Hypothesis,
+    ) -> f64 {
+        let found = state.taken.iter().skip(self.given.len()).enumerate();
+        let terms = found.map(|(place, taken)| {
             let Taken { candidate, values } = taken.clone();
-            let (center, deviations) = (values.clone(), deviations.clone());
+            let (center, deviations) = (values.clone(), self.errors(state, by_all, place));
             judging.terms(&Placed { candidate, values, center, deviations, log_share: 0.0 })
         });
         let terms: Vec<Terms> = terms.collect();

@@ -5,7 +5,7 @@ use super::data::Data;
 use super::diagnosis::{Diagnosis, Gaps};
 use super::effects_found::FoundEffect;
 use super::excitation::unseen;
-use super::leftover::Leftover;
+use super::leftover::{Leftover, is_broad};
 use super::rounds::Found;
 use super::signals::Signals;
 use super::state::{Setting, State};
@@ -218,9 +218,7 @@ fn broad(diagnosis: &Diagnosis) -> Option<(&str, f64)> {
     let gaps = &diagnosis.train;
     let both = gaps.after.per_joint.iter().zip(&gaps.floor.per_joint).zip(&diagnosis.places);
     let left = both.filter_map(|((after, floor), place)| Some(((*after)?, (*floor)?, place)));
-    let broad = left.filter(|(after, floor, _)| {
-        *after > policy::BROAD && *after > policy::BROAD_OF_NOISE * floor
-    });
+    let broad = left.filter(|(after, floor, _)| is_broad(*after, *floor));
     let most = broad.max_by(|a, b| a.0.total_cmp(&b.0));
     most.map(|(after, _, place)| (place.as_str(), after))
 }

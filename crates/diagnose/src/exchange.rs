@@ -134,12 +134,12 @@ impl Search<'_> {
             let all = self.with_one_more(&rest, &others, &is_there, None);
             let last = others.len();
             // two that are met more often are plainer than one
+            let met = of(a).occurrence.max(of(b).occurrence);
             let is_better = |one: &Hypothesis| {
-                let met = self.candidate(one, last).occurrence;
-                let is_rarer = met > of(a).occurrence.max(of(b).occurrence);
+                let is_rarer = self.candidate(one, last).occurrence > met;
                 let least = if is_rarer { policy::NAMED } else { 0.0 };
-                let is_told = !is_rarer || !self.is_same(now, one, last);
-                one.posterior > now.posterior + least && is_told
+                one.posterior > now.posterior + least
+                    && !(is_rarer && self.is_same(now, one, last, met))
             };
             let best = all.iter().find(|one| self.is_worth(&rest, one, last));
             let next = best.map(|best| self.plainest(best, last, all.iter()));

@@ -122,13 +122,21 @@ impl<'a> Search<'a> {
         let is_as_good = own.at == other.at && one.posterior > than.posterior - policy::NAMED;
         let [count, others] = [own, other].map(|of| of.law.parameters().len());
         let is_usual = own.at == other.at && own.occurrence < other.occurrence && count <= others;
-        own.is_plainer_than(other) && (is_as_good || is_usual && self.is_same(one, than, place))
+        own.is_plainer_than(other)
+            && (is_as_good || is_usual && self.is_same(one, than, place, own.occurrence))
     }
 
-    /// Whether a hypothesis leaves hardly more than another one with an effect in one place, of what
-    /// all effects do there or of what the other one leaves that is no noise, and of what that
-    /// effect does, without moving the model's own numbers for it.
-    pub(super) fn is_same(&self, one: &Hypothesis, than: &Hypothesis, place: usize) -> bool {
+    /// Whether a hypothesis, with something so often `met`, leaves hardly more than another one with
+    /// an effect in one place, of what all effects do there and of what that one does, without
+    /// moving the model's own numbers for it. What every drive has is there anyhow: a law that
+    /// leaves more than it does beyond that is not it either.
+    pub(super) fn is_same(
+        &self,
+        one: &Hypothesis,
+        than: &Hypothesis,
+        place: usize,
+        met: Occurrence,
+    ) -> bool {
         let at = &self.candidate(than, place).at;
         let mut all = than.torque(place);
         let is_beside = |&other: &usize| other != place && &self.candidate(than, other).at == at;
@@ -139,7 +147,8 @@ impl<'a> Search<'a> {
         let most = policy::LEFT_OF_EXPLAINED * self.told(than, place);
         let more = self.left(one).into_iter().zip(self.left(than));
         let more = more.map(|(one, than)| (one * one - than * than).max(0.0).sqrt());
-        more.zip(self.open(than)).all(|(more, open)| more < little.max(open).min(most))
+        let spared = |open: f64| if met == Occurrence::Standard { open } else { 0.0 };
+        more.zip(self.open(than)).all(|(more, open)| more < little.max(spared(open)).min(most))
             && moved(one) - moved(than) < policy::NAMED
     }
 

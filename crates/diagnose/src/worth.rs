@@ -1,5 +1,6 @@
 //! How large an effect is: whether that is worth a name.
 
+use super::candidate::Candidate;
 use super::hypothesis::{Hypothesis, Part};
 use super::search::Search;
 use crate::policy::worth::RANK;
@@ -17,9 +18,16 @@ impl Search<'_> {
         let most = others.map(|at| self.size(without, at)).fold(0.0, f64::max);
         let size = self.size(with, place);
         let own = || size * self.beyond(with, place) / self.told(with, place);
+        let is_standard = |one: &Candidate| one.occurrence == Occurrence::Standard;
+        let candidate = self.candidate(with, place);
+        let is_excuse = || {
+            let mut others = (0..without.parts.len()).map(|at| self.candidate(without, at));
+            own() <= policy::SAME * most
+                || others.any(|other| other.at == candidate.at && is_standard(other))
+                    && self.is_same(without, with, place, Occurrence::Standard)
+        };
         // what every drive has is no excuse for the errors of a law
-        let is_standard = self.candidate(with, place).occurrence == Occurrence::Standard;
-        size > policy::WORTH && (is_standard || most == 0.0 || own() > policy::SAME * most)
+        size > policy::WORTH && (is_standard(candidate) || most == 0.0 || !is_excuse())
     }
 
     /// What an effect does that others of its hypothesis cannot, as a share of the torque where

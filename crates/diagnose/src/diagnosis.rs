@@ -172,10 +172,11 @@ pub fn diagnose(
         (search, found)
     };
     let mut z = null(&sets, own);
-    let (mut begun, mut moves) = (Vec::new(), 0);
+    let (mut begun, mut moves, mut steps) = (Vec::new(), 0, Vec::new());
     let (mut search, mut found) = loop {
         let (search, found) = searched(&z, &begun, moves < MOST_MOVES);
-        let Some(moved) = found.moved else { break (search, found) };
+        steps.extend_from_slice(&found.steps);
+        let Some(moved) = found.moved else { break (search, Found { steps, ..found }) };
         begun = found.after.parts.into_iter().map(|part| part.placed).collect();
         (z, moves) = (moved, moves + 1);
     };

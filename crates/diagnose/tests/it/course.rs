@@ -51,6 +51,22 @@ fn friction_that_changes_a_little_keeps_its_name() {
     assert!(found.effects.iter().all(|one| one.change_in_time.is_none()), "{:?}", found.effects);
 }
 
+/// Friction that grows less than its velocity has a law of its own, but where it follows any law to
+/// a seventh alone: then what is like it most is no better than what every drive has.
+#[test]
+fn friction_that_follows_no_law_has_the_names_of_what_every_drive_has() {
+    for (by_chance, has_own_law) in [(0.0, true), (0.15, false)] {
+        let (mut random, mut slow) = (Random::new(5), 0.0);
+        let (found, mut names) = with(&mut |_, [_, v, _]| {
+            // a share that keeps for 0.05 s
+            slow += 0.04 * (-slow + 7.0 * random.normal());
+            6.0 * (1.0 + by_chance * slow) * v.signum() * v.abs().powf(0.4)
+        });
+        names.sort();
+        assert_eq!(names != ["coulomb", "viscous"], has_own_law, "{names:?} {:?}", found.reasons);
+    }
+}
+
 /// What a log says of Coulomb friction through an encoder of so large steps, beside a force below
 /// 3 Hz that no channel records: the names, and what is left over what friction does.
 fn friction(size: f64, step: f64, force: f64) -> (Vec<String>, f64) {

@@ -185,22 +185,6 @@ pub fn diagnose(
     let (after, mut effects) = loop {
         let after = setting.state(&found.after.parts, &z);
         let effects = found_effects(&setting, &search, &found, &before, &after);
-        for one in &effects {
-            eprintln!(
-                "  EFF {} lp {:.1} judged {:.3} trained {:.3} {:?} all {:?}",
-                setting.candidates[one.candidate].name(),
-                one.log_predicted,
-                one.judged,
-                one.trained,
-                one.parameters.iter().map(|p| (p.value, p.std)).collect::<Vec<_>>(),
-                found
-                    .after
-                    .parts
-                    .iter()
-                    .position(|p| p.placed.candidate == one.candidate)
-                    .map(|p| found.after.values(p))
-            );
-        }
         let Some(place) = idle(&effects, setting.candidates) else { break (after, effects) };
         search.drop(&mut found, place);
     };

@@ -127,9 +127,8 @@ impl<'a> Search<'a> {
     }
 
     /// Whether a hypothesis, with something so often `met`, leaves hardly more than another one with
-    /// an effect in one place, of what all effects do there and of what that one does, without
-    /// moving the model's own numbers for it. What every drive has is there anyhow: a law that
-    /// leaves more than it does beyond that is not it either.
+    /// an effect in one place. What every drive has is there anyhow: a law that leaves more than it
+    /// does beyond that is not it either.
     pub(super) fn is_same(
         &self,
         one: &Hypothesis,
@@ -142,14 +141,46 @@ impl<'a> Search<'a> {
         let is_beside = |&other: &usize| other != place && &self.candidate(than, other).at == at;
         let others = (0..than.parts.len()).filter(is_beside);
         others.for_each(|at| add(&mut all, &than.torque(at), 1.0));
-        let moved = |of: &Hypothesis| 0.5 * of.weighed.own.iter().map(|z| z * z).sum::<f64>();
         let little = policy::SAME * self.weighing.spectra.largest_share(&all);
-        let most = policy::LEFT_OF_EXPLAINED * self.told(than, place);
+        let channels = self.weighing.spectra.torque.len();
+        self.leaves_less_more(one, than, place, &|| vec![little; channels])
+            || met == Occurrence::Standard && self.is_no_better(one, than, place)
+    }
+
+    /// Whether an effect of a hypothesis does less beyond another one than it leaves, beside all
+    /// that every drive has, that is no noise.
+    pub(super) fn is_no_better(&self, one: &Hypothesis, than: &Hypothesis, place: usize) -> bool {
+        self.leaves_less_more(one, than, place, &|| {
+            let at = &self.candidate(than, place).at;
+            let is_missing = |candidate: &usize| {
+                let other = &self.weighing.candidates[*candidate];
+                let is_standard = other.occurrence == Occurrence::Standard && &other.at == at;
+                is_standard && !than.candidates().contains(candidate)
+            };
+            let missing = (0..self.screen.len()).filter(is_missing);
+            let missing = missing.filter_map(|candidate| self.screen[candidate].first().cloned());
+            let parts = than.parts.iter().cloned().chain(missing).collect();
+            self.open(&self.weighed(parts, Some(than), policy::ROUNDS[0]))
+        })
+    }
+
+    /// Whether a hypothesis leaves less than some of each channel more than another one, and less
+    /// than a share of what an effect of that does, without moving the model's own numbers for it.
+    fn leaves_less_more(
+        &self,
+        one: &Hypothesis,
+        than: &Hypothesis,
+        place: usize,
+        most: &dyn Fn() -> Vec<f64>,
+    ) -> bool {
+        let moved = |of: &Hypothesis| 0.5 * of.weighed.own.iter().map(|z| z * z).sum::<f64>();
         let more = self.left(one).into_iter().zip(self.left(than));
         let more = more.map(|(one, than)| (one * one - than * than).max(0.0).sqrt());
-        let spared = |open: f64| if met == Occurrence::Standard { open } else { 0.0 };
-        more.zip(self.open(than)).all(|(more, open)| more < little.max(spared(open)).min(most))
+        let more: Vec<f64> = more.collect();
+        let least = policy::LEFT_OF_EXPLAINED * self.told(than, place);
+        more.iter().all(|more| *more < least)
             && moved(one) - moved(than) < policy::NAMED
+            && more.iter().zip(most()).all(|(more, most)| *more < most)
     }
 
     pub(super) fn candidate(&self, hypothesis: &Hypothesis, place: usize) -> &Candidate {

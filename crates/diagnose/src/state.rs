@@ -8,6 +8,7 @@ use super::hypothesis::{Hypothesis, Part};
 use super::search::Search;
 use super::weighing::{Placed, Weighing};
 pub(super) use crate::policy::state::MOST_Z;
+use denavit_codegen::effect::Occurrence;
 use denavit_evidence::{Terms, policy};
 use denavit_measure::Split;
 
@@ -113,8 +114,9 @@ impl<'a> Setting<'a> {
     }
 
     /// The log of the evidence of held-out logs with the effects as those that were fitted have
-    /// them, and all logs. Noise is that of the held-out logs: what changes between logs is no
-    /// reason to leave an effect out.
+    /// them. Noise is that of the held-out logs: what changes between logs is no reason to leave an
+    /// effect out. What every drive has may have other values in another motion: of anything else
+    /// that is what is asked.
     pub(super) fn log_predicted(
         &self,
         judging: &Weighing<'_>,
@@ -124,7 +126,11 @@ impl<'a> Setting<'a> {
         let found = state.taken.iter().skip(self.given.len()).enumerate();
         let terms = found.map(|(place, taken)| {
             let Taken { candidate, values } = taken.clone();
-            let (center, deviations) = (values.clone(), self.errors(state, by_all, place));
+            let deviations = match self.candidates[candidate].occurrence {
+                Occurrence::Standard => self.errors(state, by_all, place),
+                _ => state.deviations[self.given.len() + place].clone(),
+            };
+            let center = values.clone();
             judging.terms(&Placed { candidate, values, center, deviations, log_share: 0.0 })
         });
         let terms: Vec<Terms> = terms.collect();

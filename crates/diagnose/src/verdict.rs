@@ -137,7 +137,7 @@ fn cancelled(diagnosis: &Diagnosis, setting: &Setting<'_>) -> Option<String> {
     (joint < setting.data.train.nominal.model.joints.len()).then_some(())?;
     let both = setting.data.each_ref().map(|data| terms_over_torque(data, joint));
     let times = both.train.max(both.held_out);
-    (times > CANCELLED).then(|| {
+    (times > CANCELLED && times.is_finite()).then(|| {
         format!(
             "the torque of {} is a small difference: its weight and inertia take {times:.1} times \
              as much, so that small errors of positions and accelerations are as large as it",

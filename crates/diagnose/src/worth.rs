@@ -24,7 +24,7 @@ impl Search<'_> {
             let mut others = (0..without.parts.len()).map(|at| self.candidate(without, at));
             own() <= policy::SAME * most
                 || others.any(|other| other.at == candidate.at && is_standard(other))
-                    && self.is_same(without, with, place, Occurrence::Standard)
+                    && self.is_no_better(without, with, place)
         };
         // what every drive has is no excuse for the errors of a law
         size > policy::WORTH && (is_standard(candidate) || most == 0.0 || !is_excuse())

@@ -156,30 +156,7 @@ pub fn diagnose(
     };
     let misread = misread(&data.train, &setting.as_given(&data.train));
     let most = if misread.is_empty() { request.most_effects } else { 0 };
-    let sets = Vec::from(setting.data.into_array());
-    let both = [(&data.train, &floors.train), (&data.held_out, &floors.held_out)];
-    let [a, b] = both.map(|(data, floors)| Gap::of_floor(data, floors).per_joint);
-    let floor = a.iter().zip(&b).map(|(a, b)| a.unwrap_or(0.0).max(b.unwrap_or(0.0)));
-    let floor: Vec<f64> = floor.collect();
-    let own = setting.effects(&setting.given);
-    let mut searched = |z: &[f64], begun: &[Placed], may_move: bool| {
-        let weighing = Weighing::new(sets.clone(), own, z);
-        let watched = &mut |share| watch(&Progress::Evaluated(share));
-        let mut search = Search::new(weighing, setting.given.len(), most, watched);
-        search.floor.clone_from(&floor);
-        let watch = &mut |taken: &[usize]| watch(&Progress::Found(taken.to_vec()));
-        let found = search.run(begun, may_move, watch);
-        (search, found)
-    };
-    let mut z = null(&sets, own);
-    let (mut begun, mut moves, mut steps) = (Vec::new(), 0, Vec::new());
-    let (mut search, mut found) = loop {
-        let (search, found) = searched(&z, &begun, moves < MOST_MOVES);
-        steps.extend_from_slice(&found.steps);
-        let Some(moved) = found.moved else { break (search, Found { steps, ..found }) };
-        begun = found.after.parts.into_iter().map(|part| part.placed).collect();
-        (z, moves) = (moved, moves + 1);
-    };
+    let (z, mut search, mut found) = searched(&setting, most, watch);
     let before = setting.state(&found.before.parts, &z);
     // What does not help logs that its values were not fitted to is not told.
     let (after, mut effects) = loop {
@@ -208,6 +185,36 @@ pub fn diagnose(
     };
     judge(&mut diagnosis, &setting, &found, &after, &misread);
     Ok(diagnosis)
+}
+
+/// A search that begins again where what it found moves the model's own numbers, with these, in
+/// their deviations.
+fn searched<'s>(
+    setting: &'s Setting<'s>,
+    most: usize,
+    watch: &mut dyn FnMut(&Progress) -> bool,
+) -> (Vec<f64>, Search<'s>, Found) {
+    let Setting { data, floors, .. } = setting;
+    let both = [(data.train, floors.train), (data.held_out, floors.held_out)];
+    let [a, b] = both.map(|(data, floors)| Gap::of_floor(data, floors).per_joint);
+    let floor = a.iter().zip(&b).map(|(a, b)| a.unwrap_or(0.0).max(b.unwrap_or(0.0)));
+    let floor: Vec<f64> = floor.collect();
+    let sets = Vec::from(data.into_array());
+    let own = setting.effects(&setting.given);
+    let mut z = null(&sets, own);
+    let (mut begun, mut moves, mut steps) = (Vec::<Placed>::new(), 0, Vec::new());
+    loop {
+        let weighing = Weighing::new(sets.clone(), own, &z);
+        let watched = &mut |share| watch(&Progress::Evaluated(share));
+        let mut search = Search::new(weighing, setting.given.len(), most, watched);
+        search.floor.clone_from(&floor);
+        let watched = &mut |taken: &[usize]| watch(&Progress::Found(taken.to_vec()));
+        let found = search.run(&begun, moves < MOST_MOVES, watched);
+        steps.extend_from_slice(&found.steps);
+        let Some(moved) = found.moved else { return (z, search, Found { steps, ..found }) };
+        begun = found.after.parts.into_iter().map(|part| part.placed).collect();
+        (z, moves) = (moved, moves + 1);
+    }
 }
 
 /// The rows of logs. Whether a drive at rest needs more than it slides with depends on the weight

@@ -126,9 +126,9 @@ impl<'a> Search<'a> {
             && (is_as_good || is_usual && self.is_same(one, than, place, own.occurrence))
     }
 
-    /// Whether a hypothesis, with something so often `met`, leaves hardly more than another one with
-    /// an effect in one place. What every drive has is there anyhow: a law that leaves more than it
-    /// does beyond that is not it either.
+    /// Whether a hypothesis, with something so often `met`, leaves hardly more than another one
+    /// with an effect in one place. What every drive has is there anyhow: a law that leaves more
+    /// than it does beyond that is not it either.
     pub(super) fn is_same(
         &self,
         one: &Hypothesis,

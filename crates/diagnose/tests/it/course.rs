@@ -67,6 +67,28 @@ fn friction_that_follows_no_law_has_the_names_of_what_every_drive_has() {
     }
 }
 
+/// What Stribeck's law leaves where viscous friction is missing as well is that, and no fault of
+/// the law.
+#[test]
+fn a_law_of_friction_is_held_against_all_that_every_drive_has() {
+    let (found, mut names) =
+        with(&mut |_, [_, v, _]| 0.8 * v + (0.6 + 0.6 * (-(v / 0.15).powi(2)).exp()) * v.signum());
+    names.sort();
+    assert_eq!(names, ["stribeck_friction", "viscous"], "{:?}", found.reasons);
+}
+
+/// Cogging of another phase in the held-out log did not repeat, however well it would fit there.
+#[test]
+fn what_held_out_logs_have_otherwise_is_no_law() {
+    let mut logs = 0.0;
+    let (found, _) = with(&mut |t, [q, ..]| {
+        logs += f64::from(u8::from(t == 0.0));
+        0.3 * (30.0 * q + 1.2 * logs).sin()
+    });
+    assert!(found.effects.is_empty(), "{:?}", found.effects);
+    assert_eq!(found.verdict, Verdict::Unexplained);
+}
+
 /// What a log says of Coulomb friction through an encoder of so large steps, beside a force below
 /// 3 Hz that no channel records: the names, and what is left over what friction does.
 fn friction(size: f64, step: f64, force: f64) -> (Vec<String>, f64) {

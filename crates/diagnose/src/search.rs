@@ -143,14 +143,14 @@ impl<'a> Search<'a> {
         others.for_each(|at| add(&mut all, &than.torque(at), 1.0));
         let little = policy::SAME * self.weighing.spectra.largest_share(&all);
         let channels = self.weighing.spectra.torque.len();
-        self.leaves_less_more(one, than, place, &|| vec![little; channels])
+        self.leaves_hardly_more(one, than, place, &|| vec![little; channels])
             || met == Occurrence::Standard && self.is_no_better(one, than, place)
     }
 
     /// Whether an effect of a hypothesis does less beyond another one than it leaves, beside all
     /// that every drive has, that is no noise.
     pub(super) fn is_no_better(&self, one: &Hypothesis, than: &Hypothesis, place: usize) -> bool {
-        self.leaves_less_more(one, than, place, &|| {
+        self.leaves_hardly_more(one, than, place, &|| {
             let at = &self.candidate(than, place).at;
             let is_missing = |candidate: &usize| {
                 let other = &self.weighing.candidates[*candidate];
@@ -164,23 +164,24 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Whether a hypothesis leaves less than some of each channel more than another one, and less
-    /// than a share of what an effect of that does, without moving the model's own numbers for it.
-    fn leaves_less_more(
+    /// Whether a hypothesis leaves of each channel less than what is `allowed` more than another
+    /// one with an effect in one place, and less than a share of what that effect does, without
+    /// moving the model's own numbers for it.
+    fn leaves_hardly_more(
         &self,
         one: &Hypothesis,
         than: &Hypothesis,
         place: usize,
-        most: &dyn Fn() -> Vec<f64>,
+        allowed: &dyn Fn() -> Vec<f64>,
     ) -> bool {
         let moved = |of: &Hypothesis| 0.5 * of.weighed.own.iter().map(|z| z * z).sum::<f64>();
         let more = self.left(one).into_iter().zip(self.left(than));
         let more = more.map(|(one, than)| (one * one - than * than).max(0.0).sqrt());
         let more: Vec<f64> = more.collect();
-        let least = policy::LEFT_OF_EXPLAINED * self.told(than, place);
-        more.iter().all(|more| *more < least)
+        let share = policy::LEFT_OF_EXPLAINED * self.told(than, place);
+        more.iter().all(|more| *more < share)
             && moved(one) - moved(than) < policy::NAMED
-            && more.iter().zip(most()).all(|(more, most)| *more < most)
+            && more.iter().zip(allowed()).all(|(more, allowed)| *more < allowed)
     }
 
     pub(super) fn candidate(&self, hypothesis: &Hypothesis, place: usize) -> &Candidate {

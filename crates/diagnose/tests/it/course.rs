@@ -63,6 +63,7 @@ fn friction_that_follows_no_law_has_the_names_of_what_every_drive_has() {
             6.0 * (1.0 + by_chance * slow) * v.signum() * v.abs().powf(0.4)
         });
         names.sort();
+        assert!(!names.is_empty(), "{:?}", found.reasons);
         assert_eq!(names != ["coulomb", "viscous"], has_own_law, "{names:?} {:?}", found.reasons);
     }
 }

@@ -34,6 +34,11 @@ impl Candidate {
         format!("{} at {}", self.effect, self.at)
     }
 
+    /// Whether every drive has it.
+    pub(super) fn is_standard(&self) -> bool {
+        self.occurrence == Occurrence::Standard
+    }
+
     /// Whether it is met more often than another one, or as often with fewer parameters.
     pub(super) fn is_plainer_than(&self, other: &Self) -> bool {
         let parameters = |of: &Self| of.law.parameters().len();

@@ -241,14 +241,22 @@ impl<'a> Data<'a> {
         let mut found = RowResponse::default();
         for (log, (signals, torques)) in self.signals.iter().zip(torques).enumerate() {
             let response = of(torques.motion(self.nominal, signals));
-            for (place, &equation) in response.equations.iter().enumerate() {
-                let is_own =
-                    |stretch: &&Stretch| stretch.log.0 == log && stretch.equation == equation;
-                let Some(&stretch) = self.stretches.iter().find(is_own) else { continue };
-                let gradient = response.gradient.iter().map(|all| signals.rows_of(&all[place]));
+            let stretch_of = |(place, equation): (usize, &usize)| {
+                let is_own = |one: &&Stretch| one.log.0 == log && one.equation == *equation;
+                Some((place, *self.stretches.iter().find(is_own)?))
+            };
+            let all: Vec<(usize, Stretch)> =
+                response.equations.iter().enumerate().filter_map(stretch_of).collect();
+            let columns = |&(place, _): &(usize, Stretch)| {
+                let gradient = response.gradient.iter().map(move |all| all[place].as_slice());
+                std::iter::once(response.torque[place].as_slice()).chain(gradient)
+            };
+            let columns: Vec<&[f64]> = all.iter().flat_map(columns).collect();
+            let mut rows = signals.all_rows_of(&columns).into_iter();
+            for (_, stretch) in all {
                 found.stretches.push(stretch);
-                found.gradient.push(gradient.collect());
-                found.torque.push(signals.rows_of(&response.torque[place]));
+                found.torque.extend(rows.next());
+                found.gradient.push(rows.by_ref().take(response.gradient.len()).collect());
             }
         }
         found

@@ -2,7 +2,7 @@
 
 use super::floor::rms;
 use super::joint_law::JointLaw;
-use super::law::{Motion, Response};
+use super::law::{Asked, Motion, Response};
 use crate::policy::drive_law::{LEAST_LOAD, LEAST_PASSED};
 use denavit_plants::effect::JointSamples;
 
@@ -14,7 +14,12 @@ impl JointLaw {
     /// changed and not what is computed, and the law has no torque where nothing was measured. It
     /// has two or three numbers and no amplitude: it explains nothing but by moving the rotor as it
     /// really moved.
-    pub(super) fn through_play(&self, motion: &Motion<'_>, values: &[f64]) -> Option<Response> {
+    pub(super) fn through_play(
+        &self,
+        motion: &Motion<'_>,
+        values: &[f64],
+        asked: Asked,
+    ) -> Option<Response> {
         let (joint, whole) = (self.joint, motion.signals);
         // a motor that is measured is where it is
         let is_loaded = rms(&motion.load[joint.0]) >= LEAST_LOAD * rms(&motion.total[joint.0]);
@@ -32,7 +37,11 @@ impl JointLaw {
             ..JointSamples::default()
         };
         let through = self.law.through(&samples, values)?;
-        (through.share >= LEAST_PASSED)
-            .then(|| Response::of(joint.0, through.torque, through.gradient))
+        let gradient = match asked {
+            _ if through.share < LEAST_PASSED => return None,
+            Asked::Torque => Vec::new(),
+            Asked::Gradient => self.law.through_gradient(&samples, values, &through),
+        };
+        Some(Response::of(joint.0, through.torque, gradient))
     }
 }

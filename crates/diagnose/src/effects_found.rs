@@ -14,7 +14,6 @@ use super::signals::Filters;
 use super::state::{MOST_Z, Setting, State};
 use super::weighing::Placed;
 use denavit_codegen::alias::{ExactAliases, Named};
-use denavit_codegen::effect::Occurrence;
 use denavit_codegen::model::Robot;
 use denavit_evidence::policy;
 use denavit_plants::effect::LawParameter;
@@ -89,8 +88,11 @@ impl FoundEffect {
     /// ask for nothing of it, so that the others alone show it.
     fn is_idle(&self, candidates: &[Candidate]) -> bool {
         let acts = self.judged > policy::WORTH;
-        let is_standard = candidates[self.candidate].occurrence == Occurrence::Standard;
-        let least = if acts && !is_standard { policy::NAMED } else { -policy::NAMED };
+        let least = if acts && !candidates[self.candidate].is_standard() {
+            policy::NAMED
+        } else {
+            -policy::NAMED
+        };
         self.log_predicted < least || self.trained < policy::WORTH
     }
 }

@@ -12,7 +12,7 @@
 //! beyond it, two derivatives are of noise.
 
 use super::joint_law::JointLaw;
-use super::law::{Motion, Response, differences};
+use super::law::{Asked, Motion, Response, differences};
 use super::signals::Signals;
 use crate::policy::elastic_law::DIFFERENCE;
 use denavit_measure::condition::Butterworth;
@@ -24,7 +24,12 @@ const ORDER: usize = 4;
 impl JointLaw {
     /// What a drive takes through a transmission that is a spring and a damper, without play; none
     /// of a motor that is measured, which is where it is.
-    pub(super) fn through_spring(&self, motion: &Motion<'_>, values: &[f64]) -> Option<Response> {
+    pub(super) fn through_spring(
+        &self,
+        motion: &Motion<'_>,
+        values: &[f64],
+        asked: Asked,
+    ) -> Option<Response> {
         let (joint, signals) = (self.joint, motion.signals);
         if signals.motor[joint.0].is_some() {
             return None;
@@ -44,7 +49,10 @@ impl JointLaw {
             DIFFERENCE * if values[place] > 0.0 { values[place] } else { start }
         };
         let torque = of(values);
-        let gradient = differences(of, &torque, values, step);
+        let gradient = match asked {
+            Asked::Torque => Vec::new(),
+            Asked::Gradient => differences(of, &torque, values, step),
+        };
         Some(Response { equations: vec![joint.0], torque, gradient })
     }
 

@@ -2,7 +2,7 @@
 
 use super::floor::rms;
 use super::given::Belief;
-use super::law::{Law, Motion, Response};
+use super::law::{Asked, Law, Motion, Response};
 use crate::policy::joint_law::{ALL_GIVEN, OF_NOISE};
 use denavit_codegen::effect::{Channel, EffectSite, SpringSide};
 use denavit_evidence::Unpredicted;
@@ -112,12 +112,10 @@ impl JointLaw {
             }
             let (torque, gradient) = law.torque_and_gradient(&samples, values);
             response.gradient.resize(gradient.len(), Vec::new());
-            for equation in equations {
-                response.equations.push(equation);
-                response.torque.push(torque.clone());
-                let all = response.gradient.iter_mut().zip(&gradient);
-                all.for_each(|(of_parameter, column)| of_parameter.push(column.clone()));
-            }
+            let all = response.gradient.iter_mut().zip(gradient);
+            all.for_each(|(own, column)| own.extend(vec![column; equations.len()]));
+            response.torque.extend(vec![torque; equations.len()]);
+            response.equations.extend(equations);
         };
         add(&self.law, self.joint, self.other);
         if let (Some(law), Some(other)) = (self.law.on_second(), self.other) {
@@ -169,6 +167,27 @@ impl JointLaw {
         let by = |slope: &f64| rate.iter().map(|rate| -slope * rate).collect();
         Some(Response::of(self.joint.0, added, gradient.iter().map(by)))
     }
+
+    fn asked(&self, motion: &Motion<'_>, values: &[f64], asked: Asked) -> Response {
+        let nothing = || {
+            let none = vec![0.0; motion.signals.samples()];
+            Response::of(self.joint.0, none.clone(), values.iter().map(|_| none.clone()))
+        };
+        let found = match (self.acts, asked) {
+            (Acts::Torque, _) => Some(self.added(motion, values)),
+            (Acts::Spring, _) => Some(self.beside_spring(motion, values)),
+            (Acts::Demand, _) => Some(self.demanded(motion, values)),
+            (Acts::Delay, _) => {
+                self.undelayed(motion, values).or_else(|| Some(self.added(motion, values)))
+            }
+            (Acts::Play, _) => self.through_play(motion, values, asked),
+            (Acts::Elastic, _) => self.through_spring(motion, values, asked),
+            (Acts::Reading, _) => Some(self.read(motion, values)),
+            (Acts::Gap | Acts::Sprung, Asked::Gradient) => self.behind(motion, values),
+            (Acts::Gap | Acts::Sprung, Asked::Torque) => self.behind_torque(motion, values),
+        };
+        found.unwrap_or_else(nothing)
+    }
 }
 
 impl Law for JointLaw {
@@ -209,29 +228,11 @@ impl Law for JointLaw {
     }
 
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
-        let nothing = || {
-            let none = vec![0.0; motion.signals.samples()];
-            Response::of(self.joint.0, none.clone(), values.iter().map(|_| none.clone()))
-        };
-        match self.acts {
-            Acts::Torque => self.added(&motion, values),
-            Acts::Spring => self.beside_spring(&motion, values),
-            Acts::Demand => self.demanded(&motion, values),
-            Acts::Delay => {
-                self.undelayed(&motion, values).unwrap_or_else(|| self.added(&motion, values))
-            }
-            Acts::Play => self.through_play(&motion, values).unwrap_or_else(nothing),
-            Acts::Elastic => self.through_spring(&motion, values).unwrap_or_else(nothing),
-            Acts::Reading => self.read(&motion, values),
-            Acts::Gap | Acts::Sprung => self.behind(&motion, values).unwrap_or_else(nothing),
-        }
+        self.asked(&motion, values, Asked::Gradient)
     }
 
     fn torque(&self, motion: Motion<'_>, values: &[f64]) -> Response {
-        let first = matches!(self.acts, Acts::Gap | Acts::Sprung)
-            .then(|| self.behind_torque(&motion, values));
-        let whole = || Response { gradient: Vec::new(), ..self.response(motion, values) };
-        first.flatten().unwrap_or_else(whole)
+        Response { gradient: Vec::new(), ..self.asked(&motion, values, Asked::Torque) }
     }
 }
 

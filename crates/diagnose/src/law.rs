@@ -113,6 +113,13 @@ pub(super) fn differences(
     (0..values.len()).map(by).collect()
 }
 
+/// What is asked of a law, where its derivatives take much longer than its torque.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Asked {
+    Torque,
+    Gradient,
+}
+
 /// A law: torques as a function of motion and parameters.
 pub trait Law {
     /// Its parameters.

@@ -8,7 +8,6 @@
 //! - [`diagnose()`]: which effects are missing, by their evidence
 
 mod behind_law;
-mod between;
 mod cancelling;
 mod candidate;
 mod catalogue;

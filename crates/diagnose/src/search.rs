@@ -154,8 +154,8 @@ impl<'a> Search<'a> {
             let at = &self.candidate(than, place).at;
             let is_missing = |candidate: &usize| {
                 let other = &self.weighing.candidates[*candidate];
-                let is_standard = other.occurrence == Occurrence::Standard && &other.at == at;
-                is_standard && !than.candidates().contains(candidate)
+                let is_absent = !than.candidates().contains(candidate);
+                other.is_standard() && &other.at == at && is_absent
             };
             let missing = (0..self.screen.len()).filter(is_missing);
             let missing = missing.filter_map(|candidate| self.screen[candidate].first().cloned());

@@ -5,7 +5,6 @@
 //! torques of effects. A law with a step at a reversal then has the same edge on both sides of the
 //! equation, which is what tells a step from a slope.
 
-use super::between::{between, cubic};
 use super::floor::white_noise;
 use super::spectra::{cosine_lines, last_driven};
 use super::standstill::{self, Rest};
@@ -14,7 +13,7 @@ use denavit_evidence::policy;
 use denavit_measure::JointIndex;
 use denavit_measure::condition::{Butterworth, STENCIL, acceleration, rate};
 use denavit_measure::log::{JointSignals, MeasuredLog};
-use denavit_numerics::{Random, derivative};
+use denavit_numerics::{Random, between, cubic, derivative};
 use std::ops::Range;
 
 /// The filters of a diagnosis.
@@ -35,6 +34,9 @@ impl Filters {
 
 /// Order of one pass of both filters.
 const ORDER: usize = 4;
+
+/// Signals that pass a filter side by side.
+const LANES: usize = 4;
 
 /// Motion and torque of one log.
 #[derive(Clone, Debug)]
@@ -335,11 +337,28 @@ impl Signals {
 
     /// What a signal of the motion's samples is in the rows: filtered, and fewer.
     pub fn rows_of(&self, signal: &[f64]) -> Vec<f64> {
+        self.all_rows_of(&[signal]).swap_remove(0)
+    }
+
+    /// The same of many signals, which takes less time than each alone.
+    pub(super) fn all_rows_of(&self, signals: &[&[f64]]) -> Vec<Vec<f64>> {
+        let mut found = vec![vec![0.0; self.rows()]; signals.len()];
         // A law that is off has many columns of nothing.
-        if signal.iter().all(|sample| *sample == 0.0) {
-            return vec![0.0; self.rows()];
+        let acts = |signal: &[f64]| signal.iter().any(|sample| *sample != 0.0);
+        let acting: Vec<usize> = (0..signals.len()).filter(|&at| acts(signals[at])).collect();
+        for places in acting.chunks(LANES) {
+            let mut lanes = vec![[0.0; LANES]; self.samples() / self.rows.within];
+            for (lane, &at) in places.iter().enumerate() {
+                let means = self.cell_means(signals[at]);
+                lanes.iter_mut().zip(means).for_each(|(lanes, mean)| lanes[lane] = mean);
+            }
+            self.filter.zero_phase_lanes(&mut lanes);
+            let rows = lanes[self.rows.range.clone()].iter().step_by(self.rows.stride);
+            for (row, lanes) in rows.enumerate() {
+                places.iter().zip(lanes).for_each(|(&at, sample)| found[at][row] = *sample);
+            }
         }
-        self.row_samples(&self.filtered(self.cell_means(signal)))
+        found
     }
 
     /// White noise at the log's samples, through the filter, in the rows.

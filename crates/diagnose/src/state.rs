@@ -8,7 +8,6 @@ use super::hypothesis::{Hypothesis, Part};
 use super::search::Search;
 use super::weighing::{Placed, Weighing};
 pub(super) use crate::policy::state::MOST_Z;
-use denavit_codegen::effect::Occurrence;
 use denavit_evidence::{Terms, policy};
 use denavit_measure::Split;
 
@@ -126,9 +125,9 @@ impl<'a> Setting<'a> {
         let found = state.taken.iter().skip(self.given.len()).enumerate();
         let terms = found.map(|(place, taken)| {
             let Taken { candidate, values } = taken.clone();
-            let deviations = match self.candidates[candidate].occurrence {
-                Occurrence::Standard => self.errors(state, by_all, place),
-                _ => state.deviations[self.given.len() + place].clone(),
+            let deviations = match self.candidates[candidate].is_standard() {
+                true => self.errors(state, by_all, place),
+                false => state.deviations[self.given.len() + place].clone(),
             };
             let center = values.clone();
             judging.terms(&Placed { candidate, values, center, deviations, log_share: 0.0 })

@@ -8,7 +8,6 @@
 
 use super::hypothesis::{Hypothesis, Part};
 use super::search::{Search, Step};
-use denavit_codegen::effect::Occurrence;
 use denavit_evidence::policy;
 
 impl Search<'_> {
@@ -25,7 +24,7 @@ impl Search<'_> {
         let least = single.map_or(policy::NAMED, |one| one.posterior - now.posterior);
         let is_standard = |candidate: usize| {
             let one = &self.weighing.candidates[candidate];
-            one.occurrence == Occurrence::Standard && one.joint.is_some()
+            one.is_standard() && one.joint.is_some()
         };
         let glance = self.glance(now, &now.parts);
         let seen = self.seen(&glance, &now.parts, &is_standard);

@@ -1,10 +1,8 @@
 //! How large an effect is: whether that is worth a name.
 
-use super::candidate::Candidate;
 use super::hypothesis::{Hypothesis, Part};
 use super::search::Search;
 use crate::policy::worth::RANK;
-use denavit_codegen::effect::Occurrence;
 use denavit_evidence::policy;
 use nalgebra::{DMatrix, DVector};
 
@@ -18,16 +16,15 @@ impl Search<'_> {
         let most = others.map(|at| self.size(without, at)).fold(0.0, f64::max);
         let size = self.size(with, place);
         let own = || size * self.beyond(with, place) / self.told(with, place);
-        let is_standard = |one: &Candidate| one.occurrence == Occurrence::Standard;
         let candidate = self.candidate(with, place);
         let is_excuse = || {
             let mut others = (0..without.parts.len()).map(|at| self.candidate(without, at));
             own() <= policy::SAME * most
-                || others.any(|other| other.at == candidate.at && is_standard(other))
+                || others.any(|other| other.at == candidate.at && other.is_standard())
                     && self.is_no_better(without, with, place)
         };
         // what every drive has is no excuse for the errors of a law
-        size > policy::WORTH && (is_standard(candidate) || most == 0.0 || !is_excuse())
+        size > policy::WORTH && (candidate.is_standard() || most == 0.0 || !is_excuse())
     }
 
     /// What an effect does that others of its hypothesis cannot, as a share of the torque where

@@ -53,6 +53,13 @@ pub struct JointUse {
 pub struct Check {
     /// How well the parameters are excited.
     pub excitation: Excitation,
+    /// The use that it makes of the limits.
+    pub limits: LimitUse,
+}
+
+/// The use that a trajectory makes of the limits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LimitUse {
     /// The joints, in the order of q.
     pub joints: Vec<JointUse>,
     /// The point that comes closest to the ground, and its height \[m\].
@@ -63,8 +70,8 @@ pub struct Check {
     pub assumed: Vec<(String, LimitKind, f64)>,
 }
 
-impl Check {
-    /// The largest use of a limit; a point that is too low counts as more than 1.
+impl LimitUse {
+    /// The largest use; a point that is too low counts as more than 1.
     pub fn worst(&self) -> f64 {
         let uses = self
             .joints
@@ -75,10 +82,12 @@ impl Check {
         let is_low = missing > 0.0 || missing.is_nan();
         uses.max(if is_low { 1.0 + missing.abs().max(1e-6) } else { 0.0 })
     }
+}
 
+impl Check {
     /// Whether all limits hold.
     pub fn is_feasible(&self) -> bool {
-        self.worst() <= 1.0 + 1e-9
+        self.limits.worst() <= 1.0 + 1e-9
     }
 
     /// Whether an estimate from it would find all parameters that are meant, and not take the
@@ -96,25 +105,39 @@ pub(super) fn check(
     references: &[Reference],
     lap: Lap,
 ) -> Check {
-    let n = model.joints.len();
-    let mut motion = vec![Vec::with_capacity(lap.steps + 1); 3 * n];
-    for k in 0..=lap.steps {
-        // the very end belongs to the lap, not to the rest after it
-        let t_s = (lap.duration_s * k as f64 / lap.steps as f64).min(lap.duration_s);
-        for (joint, reference) in references.iter().enumerate() {
-            let setpoint = reference.at(t_s);
-            motion[joint].push(setpoint.position);
-            motion[n + joint].push(setpoint.rate);
-            motion[2 * n + joint].push(setpoint.acceleration);
-        }
-    }
+    let motion = lap.motion(references);
     let columns: Vec<&[f64]> = motion.iter().map(Vec::as_slice).collect();
-    let torques = model.torque_columns(evaluators, &columns);
+    let limits = of_motion(model, evaluators, &columns, lap);
+    let w = stack.w(model, evaluators, &columns, Signs::Exact);
+    Check { excitation: Stacked::new(w).excitation(), limits }
+}
+
+/// The use that such references make of the limits alone, which takes less time.
+pub(super) fn limit_use(
+    model: &ExcitedModel,
+    evaluators: &mut Evaluators,
+    references: &[Reference],
+    lap: Lap,
+) -> LimitUse {
+    let motion = lap.motion(references);
+    let columns: Vec<&[f64]> = motion.iter().map(Vec::as_slice).collect();
+    of_motion(model, evaluators, &columns, lap)
+}
+
+/// The same of positions of all joints, their velocities, and their accelerations.
+fn of_motion(
+    model: &ExcitedModel,
+    evaluators: &mut Evaluators,
+    motion: &[&[f64]],
+    lap: Lap,
+) -> LimitUse {
+    let n = model.joints.len();
+    let torques = model.torque_columns(evaluators, motion);
     let limited = model.limited();
     let joint = |(index, limits): (usize, &JointLimits)| {
         let moves = limits.held.is_none();
         let of = |order: usize, range: [f64; 2]| {
-            moves.then(|| Extremes::of(&motion[order * n + index], range))
+            moves.then(|| Extremes::of(motion[order * n + index], range))
         };
         let (velocity, acceleration) = (limits.velocity, limits.acceleration);
         JointUse {
@@ -125,7 +148,7 @@ pub(super) fn check(
             acceleration: of(2, [-acceleration, acceleration]),
             torque: limits.torque.filter(|_| limited.contains(&index)).map(|range| {
                 let coulomb = model.coulomb(index);
-                let signed = torques[index].iter().zip(&motion[n + index]).map(|(torque, rate)| {
+                let signed = torques[index].iter().zip(motion[n + index]).map(|(torque, rate)| {
                     // friction reaches its full value with the smallest rate, and may oppose
                     // either way at rest
                     let sign = if *rate != 0.0 { rate.signum() } else { torque.signum() };
@@ -136,16 +159,14 @@ pub(super) fn check(
         }
     };
     let joints = model.joints.iter().enumerate().map(joint).collect();
-    let gaps = model.gap_columns(evaluators, &columns[..n]);
+    let gaps = model.gap_columns(evaluators, &motion[..n]);
     let lowest = |(point, gaps): (usize, &Vec<f64>)| {
         let least = gaps.iter().copied().fold(f64::INFINITY, |a, b| if b >= a { a } else { b });
         (model.points[point].name.clone(), least)
     };
     let lowest = gaps.iter().enumerate().map(lowest).min_by(|a, b| a.1.total_cmp(&b.1));
-    let w = stack.w(model, evaluators, &columns, Signs::Exact);
-    let excitation = Stacked::new(w).excitation();
     let assumed = model.joints.iter().flat_map(assumed).collect();
-    Check { excitation, joints, lowest, clearance_m: lap.clearance_m, assumed }
+    LimitUse { joints, lowest, clearance_m: lap.clearance_m, assumed }
 }
 
 /// The limits of a joint that the model does not give.
@@ -163,4 +184,23 @@ pub(super) struct Lap {
     pub(super) duration_s: f64,
     pub(super) steps: usize,
     pub(super) clearance_m: f64,
+}
+
+impl Lap {
+    /// Positions of all joints at its times, their velocities, and their accelerations.
+    fn motion(&self, references: &[Reference]) -> Vec<Vec<f64>> {
+        let n = references.len();
+        let mut motion = vec![Vec::with_capacity(self.steps + 1); 3 * n];
+        for k in 0..=self.steps {
+            // the very end belongs to the lap, not to the rest after it
+            let t_s = (self.duration_s * k as f64 / self.steps as f64).min(self.duration_s);
+            for (joint, reference) in references.iter().enumerate() {
+                let setpoint = reference.at(t_s);
+                motion[joint].push(setpoint.position);
+                motion[n + joint].push(setpoint.rate);
+                motion[2 * n + joint].push(setpoint.acceleration);
+            }
+        }
+        motion
+    }
 }

@@ -4,8 +4,7 @@
 use super::error::Error;
 use super::model::Evaluators;
 use super::{
-    Check, ExciteOptions, ExcitedModel, SAFE, Search, Space, Stack, prepared, references,
-    trajectory_file,
+    Check, ExciteOptions, ExcitedModel, Search, Space, Stack, prepared, references, trajectory_file,
 };
 use denavit_codegen::model::Robot;
 use denavit_plants::trajectory::Reference;
@@ -42,7 +41,7 @@ impl Feasible {
         let Self { options, model, space, stack, evaluators } = self;
         let search = Search { options, model, space, stack };
         let (x, _) = search.within_limits(x, evaluators);
-        (search.judged(&x, evaluators).worst() <= SAFE).then_some(x)
+        search.is_safe(&x, evaluators).then_some(x)
     }
 
     /// The use that a trajectory makes of the limits.

@@ -27,7 +27,7 @@ mod space;
 mod stack;
 
 use crate::policy::excite::{FIRST_SHARE, RESERVE, SAFE, SHARPNESS};
-pub use check::{Check, Extremes, JointUse};
+pub use check::{Check, Extremes, JointUse, LimitUse};
 pub use error::{Error, ErrorKind};
 pub use fault::LimitKind;
 pub use feasible::Feasible;
@@ -38,7 +38,7 @@ pub use solve::{Iterate, SolverStop};
 pub use space::{Ends, Family, Space};
 pub use stack::Stack;
 
-use check::{Lap, check};
+use check::{Lap, check, limit_use};
 use denavit_codegen::model::Robot;
 use denavit_numerics::Random;
 use denavit_plants::trajectory::Reference;
@@ -87,7 +87,7 @@ struct Rank {
 
 impl Rank {
     fn new(check: &Check, objective: f64) -> Self {
-        Self { excess: if check.is_feasible() { 0.0 } else { check.worst() }, objective }
+        Self { excess: if check.is_feasible() { 0.0 } else { check.limits.worst() }, objective }
     }
 
     /// Whether it is better than another; what is no number is worse than all that is.
@@ -410,19 +410,24 @@ impl Search<'_> {
     }
 
     fn judged(&self, x: &[f64], evaluators: &mut Evaluators) -> Check {
-        let lap = Lap {
-            duration_s: self.space.duration_s(),
-            steps: CHECKED_STEPS,
-            clearance_m: self.clearance_m(),
-        };
-        check(self.model, self.stack, evaluators, &references(self.model, self.space, x), lap)
+        let references = references(self.model, self.space, x);
+        check(self.model, self.stack, evaluators, &references, self.lap())
+    }
+
+    fn is_safe(&self, x: &[f64], evaluators: &mut Evaluators) -> bool {
+        let references = references(self.model, self.space, x);
+        limit_use(self.model, evaluators, &references, self.lap()).worst() <= SAFE
+    }
+
+    fn lap(&self) -> Lap {
+        let (duration_s, clearance_m) = (self.space.duration_s(), self.clearance_m());
+        Lap { duration_s, steps: CHECKED_STEPS, clearance_m }
     }
 
     /// The motion made smaller about its middle by the least factor that keeps all limits; as it
     /// is if none does.
     fn within_limits(&self, x: Vec<f64>, evaluators: &mut Evaluators) -> (Vec<f64>, f64) {
-        let is_safe = |check: Check| check.worst() <= SAFE;
-        if is_safe(self.judged(&x, evaluators)) {
+        if self.is_safe(&x, evaluators) {
             return (x, 1.0);
         }
         let count = self.space.coordinates();
@@ -430,12 +435,12 @@ impl Search<'_> {
             x.chunks_exact(count).flat_map(|own| self.space.scaled(own, factor)).collect()
         };
         let (mut good, mut bad) = (0.0, 1.0);
-        if !is_safe(self.judged(&smaller(good), evaluators)) {
+        if !self.is_safe(&smaller(good), evaluators) {
             return (x, 1.0);
         }
         for _ in 0..30 {
             let middle = 0.5 * (good + bad);
-            match is_safe(self.judged(&smaller(middle), evaluators)) {
+            match self.is_safe(&smaller(middle), evaluators) {
                 true => good = middle,
                 false => bad = middle,
             }

@@ -16,10 +16,18 @@ impl Section {
         [1.0 - self.b[0], self.b[2] - self.a[1]]
     }
 
-    fn next(&self, state: &mut [f64; 2], x: f64) -> f64 {
-        let y = self.b[0] * x + state[0];
-        state[0] = self.b[1] * x - self.a[0] * y + state[1];
-        state[1] = self.b[2] * x - self.a[1] * y;
+    fn next<const LANES: usize>(
+        &self,
+        state: &mut [[f64; LANES]; 2],
+        x: [f64; LANES],
+    ) -> [f64; LANES] {
+        let [first, second] = state;
+        let mut y = x;
+        for lane in 0..LANES {
+            y[lane] = self.b[0] * x[lane] + first[lane];
+            first[lane] = self.b[1] * x[lane] - self.a[0] * y[lane] + second[lane];
+            second[lane] = self.b[2] * x[lane] - self.a[1] * y[lane];
+        }
         y
     }
 }
@@ -104,31 +112,45 @@ impl Butterworth {
     /// go on turned about its last sample, and to have been at rest before that, so that neither
     /// steps nor slopes make transients.
     pub fn zero_phase(&self, signal: &mut [f64]) {
-        let Some((&first, &last)) = signal.first().zip(signal.last()) else { return };
-        let pad = self.settling.min(signal.len() - 1);
-        let before: Vec<f64> = (1..=pad).rev().map(|k| 2.0 * first - signal[k]).collect();
-        let end = signal.len() - 1;
-        let mut after: Vec<f64> = (1..=pad).map(|k| 2.0 * last - signal[end - k]).collect();
+        self.zero_phase_lanes(signal.as_chunks_mut::<1>().0);
+    }
+
+    /// The same for signals side by side, each to the bit what it is alone. Each waits for its own
+    /// last sample and for no other's, so that a few take hardly longer than one.
+    pub fn zero_phase_lanes<const LANES: usize>(&self, signals: &mut [[f64; LANES]]) {
+        let Some((&first, &last)) = signals.first().zip(signals.last()) else { return };
+        let (pad, end) = (self.settling.min(signals.len() - 1), signals.len() - 1);
+        let turned = |about: [f64; LANES], k: usize| {
+            std::array::from_fn(|lane| 2.0 * about[lane] - signals[k][lane])
+        };
+        let before: Vec<[f64; LANES]> = (1..=pad).rev().map(|k| turned(first, k)).collect();
+        let mut after: Vec<[f64; LANES]> = (1..=pad).map(|k| turned(last, end - k)).collect();
         let mut states = self.states(before.first().copied().unwrap_or(first));
         before.iter().for_each(|&x| _ = self.step(&mut states, x));
-        for x in signal.iter_mut().chain(&mut after) {
+        for x in signals.iter_mut().chain(&mut after) {
             *x = self.step(&mut states, *x);
         }
-        let start = after.last().copied().unwrap_or(signal[end]);
+        let start = after.last().copied().unwrap_or(signals[end]);
         let mut states = self.states(start);
         for x in after.iter().rev() {
             self.step(&mut states, *x);
         }
-        for x in signal.iter_mut().rev() {
+        for x in signals.iter_mut().rev() {
             *x = self.step(&mut states, *x);
         }
     }
 
-    fn states(&self, level: f64) -> Vec<[f64; 2]> {
-        self.sections.iter().map(|section| section.at_rest().map(|state| state * level)).collect()
+    fn states<const LANES: usize>(&self, level: [f64; LANES]) -> Vec<[[f64; LANES]; 2]> {
+        let at_rest =
+            |section: &Section| section.at_rest().map(|state| level.map(|level| state * level));
+        self.sections.iter().map(at_rest).collect()
     }
 
-    fn step(&self, states: &mut [[f64; 2]], x: f64) -> f64 {
+    fn step<const LANES: usize>(
+        &self,
+        states: &mut [[[f64; LANES]; 2]],
+        x: [f64; LANES],
+    ) -> [f64; LANES] {
         let sections = self.sections.iter().zip(states);
         sections.fold(x, |x, (section, state)| section.next(state, x))
     }
@@ -172,6 +194,20 @@ mod tests {
         let mut constant = vec![7.5; 500];
         filter.zero_phase(&mut constant);
         assert!(constant.iter().all(|value| (value - 7.5).abs() < 1e-12));
+    }
+
+    #[test]
+    fn signals_side_by_side_are_what_they_are_alone() {
+        let filter = Butterworth::new(4, 20.0, 1e-3).expect("a lawful cutoff");
+        let alone = [3.0, 17.0, 40.0].map(|hz| wave(hz, 1e-3, 700));
+        let mut lanes: Vec<[f64; 3]> =
+            (0..700).map(|k| alone.each_ref().map(|signal| signal[k] + 0.3)).collect();
+        filter.zero_phase_lanes(&mut lanes);
+        for (lane, signal) in alone.iter().enumerate() {
+            let mut signal: Vec<f64> = signal.iter().map(|sample| sample + 0.3).collect();
+            filter.zero_phase(&mut signal);
+            assert!(lanes.iter().zip(&signal).all(|(x, y)| x[lane].to_bits() == y.to_bits()));
+        }
     }
 
     #[test]

@@ -8,11 +8,12 @@
 //! - [`interval_factor`], [`least_by_chance`]: what chance makes of errors and variances
 //! - [`long_run`], [`time_alike`]: variances and samples where neighbours are alike
 //! - [`rms`], [`products`]: the root of a mean square, products of two signals
-//! - [`derivative`]: central differences
+//! - [`derivative`]: central differences; [`between`], [`cubic`]: a signal between its samples
 //! - [`extremes`]: the rows of long columns that a picture needs
 //! - [`envelope`]: what is between the ends of a signal that chatters
 //! - [`short`], [`percent`]: numbers as a person writes them
 
+mod between;
 mod butterworth;
 mod decimate;
 mod derivative;
@@ -25,6 +26,7 @@ mod random;
 mod text;
 mod variances;
 
+pub use between::{between, cubic};
 pub use butterworth::Butterworth;
 pub use decimate::Decimator;
 pub use derivative::derivative;

@@ -70,9 +70,9 @@ fn limits_hold_by_other_functions_than_those_that_were_optimised() {
     assert!(highest[0] <= 30.0 + 1e-3 && highest[1] <= 30.0 + 1e-3, "{highest:?}");
     assert!(lowest >= 0.01 - 1e-6, "{lowest}");
     let check = &found.found().ended;
-    let torque = check.joints[0].torque.expect("it has a limit").range;
+    let torque = check.limits.joints[0].torque.expect("it has a limit").range;
     assert!((torque[0].abs().max(torque[1].abs()) - highest[0]).abs() < 0.05, "{torque:?}");
-    let (point, height) = check.lowest.clone().expect("the arm has a tip");
+    let (point, height) = check.limits.lowest.clone().expect("the arm has a tip");
     assert!(point == "tip" && (height - lowest).abs() < 1e-3, "{height} {lowest}");
 }
 
@@ -135,7 +135,7 @@ fn tulips_leg_is_excited_from_an_infeasible_start_at_least_as_well_as_in_the_the
     let found = found(&shipped_robot("tulip_leg_table34"), &options);
     assert_eq!(found.stack.names.len(), 24);
     let start = found.found();
-    assert!(start.began.worst() > 10.0, "the start is infeasible");
+    assert!(start.began.limits.worst() > 10.0, "the start is infeasible");
     assert!(start.ended.is_feasible());
     assert!(start.ended.excitation.condition < 747.0, "{:?}", start.ended.excitation);
 }
@@ -192,7 +192,7 @@ fn where_no_posture_is_allowed_the_answer_is_infeasible() {
     let robot = arm("[-1.0, 2.0]", &buried);
     let found = found(&robot, &ExciteOptions { starts: 1, evaluations: 40, ..options() });
     assert!(!found.found().ended.is_feasible());
-    assert!(found.found().ended.worst() > 1.0);
+    assert!(found.found().ended.limits.worst() > 1.0);
 }
 
 /// A robot that hangs by its floating base, 0.45 m above the ground, with a leg of 0.5 m: the foot
@@ -217,7 +217,7 @@ fn a_foot_below_a_floating_base_keeps_off_the_ground() {
         let leg = file.find("leg").expect("it moves");
         let angles = (0..4001).map(|k| leg.at(0.001 * f64::from(k)).position);
         let lowest = angles.map(|q| 0.45 - 0.5 * q.cos()).fold(f64::INFINITY, f64::min);
-        (lowest, found.found().ended.is_feasible(), found.found().ended.lowest.clone())
+        (lowest, found.found().ended.is_feasible(), found.found().ended.limits.lowest.clone())
     };
     let (height, is_feasible, told) = lowest(Some(0.01));
     assert!(is_feasible && height >= 0.01 - 1e-6, "{height}");
@@ -244,7 +244,10 @@ fn few_evaluations_end_nowhere_worse_than_they_began() {
                 let [began, ended] = [began, ended].map(|one| one.excitation.condition);
                 assert!(ended <= began * (1.0 + 1e-9), "{seed} {evaluations}: {began} {ended}");
             } else {
-                assert!(start.ended.worst() <= start.began.worst(), "{seed} {evaluations}");
+                assert!(
+                    start.ended.limits.worst() <= start.began.limits.worst(),
+                    "{seed} {evaluations}"
+                );
             }
         }
     }

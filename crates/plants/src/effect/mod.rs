@@ -249,7 +249,8 @@ impl EffectLaw {
             None => self.value(samples, values).split_off(1),
             Some(Channel::Torque) if self.is_transmission() => {
                 let nothing = || vec![vec![0.0; samples.len()]; values.len()];
-                self.through(samples, values).map_or_else(nothing, |through| through.gradient)
+                let gradient = |through| self.through_gradient(samples, values, &through);
+                self.through(samples, values).map_or_else(nothing, gradient)
             }
             Some(Channel::Torque) if self.is_inverse() => {
                 let mut columns = self.value(samples, values).split_off(1);

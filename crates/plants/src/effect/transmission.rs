@@ -134,6 +134,9 @@ impl Rotor {
             let step_s = t[k] - t[k - 1];
             let steps = (STEPS * step_s / swing_s).ceil().clamp(1.0, MOST_STEPS);
             let (h, mut sum) = (step_s / steps, 0.0);
+            let gained = h / inertia;
+            // an estimate may be below 0, and friction pushes nothing
+            let most = (gained * coulomb).max(0.0);
             for step in 0..steps as usize {
                 let u = step as f64 / steps;
                 let joint = between([q[k - 1], q[k]], [qd[k - 1], qd[k]], u, step_s);
@@ -144,9 +147,7 @@ impl Rotor {
                 if beyond != 0.0 {
                     reaches += stiffness * beyond + damping * (rate - joint[1]);
                 }
-                let free = rate + h * (torque - viscous * rate - reaches) / inertia;
-                // an estimate may be below 0, and friction pushes nothing
-                let most = (h * coulomb / inertia).max(0.0);
+                let free = rate + gained * (torque - viscous * rate - reaches);
                 rate = free - free.clamp(-most, most);
                 position += h * rate;
                 sum += reaches;
@@ -189,29 +190,40 @@ impl EffectLaw {
         self.channel.as_ref()?.transmission.as_ref()
     }
 
-    /// What a transmission adds to the torque that is logged, its derivatives by the parameters
-    /// from differences, and the share that it passes on of what a stiff one would; none where
-    /// it hardly gives way, and of other laws. The drive's numbers are among the samples.
+    /// What a transmission adds to the torque that is logged, and the share that it passes on of
+    /// what a stiff one would; none where it hardly gives way, and of other laws. The drive's
+    /// numbers are among the samples.
     pub fn through(&self, samples: &JointSamples<'_>, values: &[f64]) -> Option<Transmitted> {
-        let of = |values: &[f64]| self.transmission()?.rotor(samples.drive, values);
-        let rotor = of(values).filter(|_| samples.t.len() > 1)?;
+        let rotor = self.rotor(samples, values).filter(|_| samples.t.len() > 1)?;
         let rigid = Rotor { swing_s: SHORTEST_S, half: 0.0, ..rotor }.along(samples);
         let passed = rotor.along(samples);
+        let size = |torque: &[f64]| torque.iter().map(|torque| torque.abs()).sum::<f64>();
+        let share = size(&passed) / size(&rigid).max(f64::MIN_POSITIVE);
+        let torque = rigid.iter().zip(&passed).map(|(rigid, passed)| rigid - passed).collect();
+        Some(Transmitted { share, torque, passed })
+    }
+
+    /// The derivatives of what it adds by each parameter, from differences.
+    pub fn through_gradient(
+        &self,
+        samples: &JointSamples<'_>,
+        values: &[f64],
+        Transmitted { passed, .. }: &Transmitted,
+    ) -> Vec<Vec<f64>> {
         let by = |place: usize| -> Vec<f64> {
             let start = self.parameters[place].start.first().copied().unwrap_or(1.0);
             let size = if values[place] > 0.0 { values[place] } else { start };
             let mut moved = values.to_vec();
             moved[place] += DIFFERENCE * size;
-            let moved = of(&moved).map_or_else(|| passed.clone(), |rotor| rotor.along(samples));
+            let rotor = self.rotor(samples, &moved);
+            let moved = rotor.map_or_else(|| passed.clone(), |rotor| rotor.along(samples));
             passed.iter().zip(moved).map(|(a, b)| (a - b) / (DIFFERENCE * size)).collect()
         };
-        let size = |torque: &[f64]| torque.iter().map(|torque| torque.abs()).sum::<f64>();
-        let share = size(&passed) / size(&rigid).max(f64::MIN_POSITIVE);
-        Some(Transmitted {
-            share,
-            torque: rigid.iter().zip(&passed).map(|(rigid, passed)| rigid - passed).collect(),
-            gradient: (0..values.len()).map(by).collect(),
-        })
+        (0..values.len()).map(by).collect()
+    }
+
+    fn rotor(&self, samples: &JointSamples<'_>, values: &[f64]) -> Option<Rotor> {
+        self.transmission()?.rotor(samples.drive, values)
     }
 }
 
@@ -250,8 +262,8 @@ pub struct Transmitted {
     /// What is logged more than a drive on a transmission that hardly gives way would need, at each
     /// sample [N m, N].
     pub torque: Vec<f64>,
-    /// The derivative by each parameter.
-    pub gradient: Vec<Vec<f64>>,
+    /// What reaches the joint [N m, N].
+    pub passed: Vec<f64>,
     /// What reaches the joint, as a share of what would through a transmission that hardly gives
     /// way (means of absolute values).
     pub share: f64,

@@ -64,15 +64,15 @@ pub fn excited_json(found: &ExcitationAnswer<'_>) -> Value {
         "condition": finite(check.excitation.condition),
         "condition_scaled": finite(check.excitation.condition_scaled),
         "log_determinant": finite(check.excitation.log_determinant),
-        "worst_use": finite(check.worst()),
+        "worst_use": finite(check.limits.worst()),
         "columns": found.stack.names,
         "not_excited": found.stack.left_out,
-        "joints": check.joints.iter().map(joint).collect::<Vec<_>>(),
-        "lowest_point": check.lowest.as_ref().map(|(point, height)| json!({
+        "joints": check.limits.joints.iter().map(joint).collect::<Vec<_>>(),
+        "lowest_point": check.limits.lowest.as_ref().map(|(point, height)| json!({
             "point": point, "height_m": finite(*height),
-            "clearance_m": finite(check.clearance_m),
+            "clearance_m": finite(check.limits.clearance_m),
         })),
-        "assumed_limits": check.assumed.iter().map(|(joint, limit, value)| json!({
+        "assumed_limits": check.limits.assumed.iter().map(|(joint, limit, value)| json!({
             "joint": joint, "limit": limit.key(), "value": value,
         })).collect::<Vec<_>>(),
     });
@@ -110,7 +110,7 @@ fn start(start: &StartReport) -> Value {
         "condition": finite(start.ended.excitation.condition),
         "feasible": start.ended.is_feasible(),
         "objective": finite(start.objective),
-        "worst_use": finite(start.ended.worst()),
+        "worst_use": finite(start.ended.limits.worst()),
         "evaluations": start.evaluations,
         "stop": start.stop.word(),
         "shrunk": start.shrunk,
@@ -141,11 +141,11 @@ fn write(out: &mut String, found: &ExcitationAnswer<'_>) -> fmt::Result {
         let text = format!("not excited by what moves: {}", found.stack.left_out.join(", "));
         writeln!(out, "{}", paragraph("", "  ", &text))?;
     }
-    if !check.assumed.is_empty() {
+    if !check.limits.assumed.is_empty() {
         let of = |(joint, limit, value): &(String, LimitKind, f64)| {
             format!("{} of {joint} {}", limit.key(), short(*value))
         };
-        let listed: Vec<String> = check.assumed.iter().map(of).collect();
+        let listed: Vec<String> = check.limits.assumed.iter().map(of).collect();
         let text = format!(
             "limits that the model does not give, and that were taken from one sine a lap over the \
              whole range: {}\n  hint: `limits` of a joint in the model file can state them; low \
@@ -155,11 +155,11 @@ fn write(out: &mut String, found: &ExcitationAnswer<'_>) -> fmt::Result {
         writeln!(out, "{}", paragraph("", "  ", &text))?;
     }
     writeln!(out, "\n{}", uses(check))?;
-    if let Some((point, height)) = &check.lowest {
+    if let Some((point, height)) = &check.limits.lowest {
         writeln!(
             out,
             "lowest point: {point}, {height:.4} m above the ground ({:.4} m to be kept)\n",
-            check.clearance_m
+            check.limits.clearance_m
         )?;
     }
     if let Some(excited) = found.excited {
@@ -168,7 +168,11 @@ fn write(out: &mut String, found: &ExcitationAnswer<'_>) -> fmt::Result {
     match check.is_feasible() {
         true => writeln!(out, "within all limits")?,
         false => {
-            writeln!(out, "outside of a limit: {:.2} % of its range", 100.0 * check.worst())?;
+            writeln!(
+                out,
+                "outside of a limit: {:.2} % of its range",
+                100.0 * check.limits.worst()
+            )?;
         }
     }
     if !check.excites() {
@@ -198,7 +202,7 @@ fn uses(check: &Check) -> Table {
         ("torque", Align::Right),
         ("use", Align::Right),
     ]);
-    for joint in &check.joints {
+    for joint in &check.limits.joints {
         let all = [&joint.position, &joint.velocity, &joint.acceleration, &joint.torque];
         let mut cells = vec![joint.name.clone()];
         for extremes in all {
@@ -228,7 +232,7 @@ fn starts(excited: &Excited) -> Table {
         ("", Align::Left),
     ]);
     for (index, start) in excited.starts.iter().enumerate() {
-        let percent = |check: &Check| format!("{:.1} %", 100.0 * check.worst());
+        let percent = |check: &Check| format!("{:.1} %", 100.0 * check.limits.worst());
         table.push(vec![
             (index + 1).to_string(),
             shown(start.began.excitation.condition),

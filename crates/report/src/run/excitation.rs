@@ -40,7 +40,7 @@ pub fn excitation_picture(picture: &ExcitationPicture<'_>) -> String {
     svg.label([SIDE, 55.0], "start", "font-size=\"13\" fill=\"#555\"", picture.subtitle);
     let half = 0.5 * (WIDTH - 2.0 * SIDE);
     let references = excited.references();
-    let uses = &excited.found().ended.joints;
+    let uses = &excited.found().ended.limits.joints;
     for (place, &joint) in moving.iter().enumerate() {
         let left = SIDE + (place % 2) as f64 * half + SCALE;
         let corner = [left, top + (place / 2) as f64 * BLOCK];

@@ -203,17 +203,18 @@ fn searched<'s>(
     let own = setting.effects(&setting.given);
     let mut z = null(&sets, own);
     let (mut begun, mut moves, mut steps) = (Vec::<Placed>::new(), 0, Vec::new());
+    let mut screen = Vec::new();
     loop {
         let weighing = Weighing::new(sets.clone(), own, &z);
         let watched = &mut |share| watch(&Progress::Evaluated(share));
-        let mut search = Search::new(weighing, setting.given.len(), most, watched);
+        let mut search = Search::new(weighing, [setting.given.len(), most], screen, watched);
         search.floor.clone_from(&floor);
         let watched = &mut |taken: &[usize]| watch(&Progress::Found(taken.to_vec()));
         let found = search.run(&begun, moves < MOST_MOVES, watched);
         steps.extend_from_slice(&found.steps);
         let Some(moved) = found.moved else { return (z, search, Found { steps, ..found }) };
         begun = found.after.parts.into_iter().map(|part| part.placed).collect();
-        (z, moves) = (moved, moves + 1);
+        (z, moves, screen) = (moved, moves + 1, search.screen);
     }
 }
 

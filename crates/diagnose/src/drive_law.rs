@@ -1,7 +1,7 @@
 //! What is between a drive, whose torque is logged, and its joint, whose position is.
 
 use super::floor::rms;
-use super::joint_law::JointLaw;
+use super::joint_law::{JointLaw, samples};
 use super::law::{Asked, Motion, Response};
 use crate::policy::drive_law::{LEAST_LOAD, LEAST_PASSED};
 use denavit_plants::effect::JointSamples;
@@ -27,15 +27,8 @@ impl JointLaw {
             return None;
         }
         let measured = whole.measured_within(joint)?;
-        let samples = JointSamples {
-            t: &whole.t,
-            q: &whole.q[joint.0],
-            qd: &whole.qd[joint.0],
-            qdd: &whole.qdd[joint.0],
-            tau: &measured,
-            drive: motion.drives[joint.0],
-            ..JointSamples::default()
-        };
+        let (tau, drive) = (measured.as_slice(), motion.drives[joint.0]);
+        let samples = JointSamples { tau, drive, ..samples(motion, joint, None) };
         let through = self.law.through(&samples, values)?;
         let gradient = match asked {
             _ if through.share < LEAST_PASSED => return None,

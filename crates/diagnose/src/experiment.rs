@@ -245,7 +245,7 @@ impl Ambiguity<'_> {
         let effects = Effects { candidates: self.candidates, taken: &[] };
         let weighing = Weighing::new(vec![&data], effects, self.z);
         let names = self.names.iter().map(|one| weighing.part(one)).collect();
-        let search = Search::new(weighing, self.candidates.len(), 0, &mut |_| true);
+        let search = Search::new(weighing, [self.candidates.len(), 0], Vec::new(), &mut |_| true);
         Some(asked(&mut Seen { search, data: &data, names, floor: self.floor }))
     }
 }

@@ -209,6 +209,10 @@ impl Law for JointLaw {
         }
     }
 
+    fn is_of_motion(&self) -> bool {
+        self.law.is_of_motion() && self.law.on_second().is_none_or(EffectLaw::is_of_motion)
+    }
+
     fn transmission_of(&self) -> Option<JointIndex> {
         self.law.is_transmission().then_some(self.joint)
     }

@@ -139,6 +139,11 @@ pub trait Law {
         false
     }
 
+    /// Whether it is a function of the motion alone: the same whatever the model's numbers are.
+    fn is_of_motion(&self) -> bool {
+        false
+    }
+
     /// The joint whose transmission it is, of a law of one.
     fn transmission_of(&self) -> Option<JointIndex> {
         None

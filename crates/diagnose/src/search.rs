@@ -46,21 +46,26 @@ fn log_occurrence(candidate: &Candidate) -> f64 {
 }
 
 impl<'a> Search<'a> {
-    /// Evaluates all candidates that the model does not have. `watch` hears which share is done,
-    /// and says whether to go on.
+    /// Evaluates all candidates that the model does not have, but those that are the same with the
+    /// numbers of a search before, of which `screen` has what it saw, if there was one. `watch`
+    /// hears which share is done, and says whether to go on.
     pub(super) fn new(
         weighing: Weighing<'a>,
-        given: usize,
-        most: usize,
+        [given, most]: [usize; 2],
+        mut screen: Vec<Vec<Part>>,
         watch: &mut dyn FnMut(f64) -> bool,
     ) -> Self {
         let candidates = weighing.candidates;
-        let mut screen: Vec<Vec<Part>> = vec![Vec::new(); candidates.len()];
+        let is_first = screen.is_empty();
+        screen.resize(candidates.len(), Vec::new());
         let before = weighing.base.weigh(&[], None, policy::ROUNDS[1]);
         let glance = Glance::new(&weighing.base, &[], &before.variances);
         for (number, candidate) in candidates.iter().enumerate().skip(given) {
             if !watch(number as f64 / candidates.len() as f64) {
                 break;
+            }
+            if !is_first && candidate.law.is_of_motion() {
+                continue;
             }
             let all = weighing.starts(candidate);
             let log_share = -(all.len().max(1) as f64).ln();

@@ -65,7 +65,7 @@ impl<'a> Setting<'a> {
     /// The model with effects that were found by all logs, fitted to those for training alone.
     pub(super) fn state(&self, parts: &[Part], z: &[f64]) -> State {
         let weighing = Weighing::new(vec![self.data.train], self.effects(&self.given), z);
-        let search = Search::new(weighing, self.candidates.len(), 0, &mut |_| true);
+        let search = Search::new(weighing, [self.candidates.len(), 0], Vec::new(), &mut |_| true);
         let parts = parts.iter().map(|part| search.weighing.part(&part.placed)).collect();
         let fitted = search.settled(parts, None);
         self.fitted_state(&search.weighing, &fitted)

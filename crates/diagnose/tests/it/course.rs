@@ -40,6 +40,37 @@ fn a_spring_that_fades_is_no_spring() {
     assert!(found.reasons.iter().any(|one| one.contains("only near")), "{:?}", found.reasons);
 }
 
+/// A change that is smaller than what nothing explains beside it may be of that.
+#[test]
+fn a_change_is_held_against_what_is_left() {
+    for (size, is_seen) in [(0.0, true), (2.0, false)] {
+        let (mut random, mut slow) = (Random::new(3), 0.0);
+        let (found, _) = with(&mut |t, at| {
+            slow += STEP_S * TAU * 3.0 * (7.3 * random.normal() - slow);
+            20.0 * (-t / 5.0).exp() * at[0] + size * slow
+        });
+        assert!(!found.effects.is_empty(), "{:?}", found.reasons);
+        let changes = found.effects.iter().any(|one| one.change_in_time.is_some());
+        assert_eq!(changes, is_seen, "{:?}", found.reasons);
+    }
+}
+
+/// Half as much in the held-out log is as far from what was found as from nothing. That takes no
+/// friction away, which every drive has; any other name it must ask for.
+#[test]
+fn held_out_logs_ask_for_all_but_friction() {
+    let named = |law: &dyn Fn([f64; 3]) -> f64| {
+        let mut logs = 0;
+        let (_, names) = with(&mut |t, at| {
+            logs += i32::from(t == 0.0);
+            if logs == 1 { law(at) } else { 0.5 * law(at) }
+        });
+        names
+    };
+    assert_eq!(named(&|[_, v, _]| 0.3 * v.signum()), ["coulomb"]);
+    assert_eq!(named(&|[q, ..]| 3.0 * q), [""; 0]);
+}
+
 /// Friction that warms up by a quarter is friction.
 #[test]
 fn friction_that_changes_a_little_keeps_its_name() {

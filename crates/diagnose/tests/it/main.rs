@@ -11,6 +11,7 @@ mod rests;
 mod saturation;
 mod search;
 mod separate;
+mod signals;
 mod transmission;
 
 use denavit_codegen::model::{self, Robot};

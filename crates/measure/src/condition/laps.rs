@@ -125,6 +125,9 @@ fn moving(positions: &[Vec<f64>], span: Range<usize>) -> Vec<(&[f64], f64)> {
 impl Laps {
     /// Laps of a given period, with which the positions must repeat. What it lacks in digits is
     /// found, as long as that is less than a sample in a lap.
+    ///
+    /// # Errors
+    /// A period of too few samples, of one lap, or with which the positions do not repeat.
     pub fn given(
         positions: &[Vec<f64>],
         period_s: f64,

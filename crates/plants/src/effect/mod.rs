@@ -226,6 +226,12 @@ impl EffectLaw {
         uses || self.channel.is_some() && !self.is_inverse()
     }
 
+    /// Whether the law is of motion alone, and of no torque.
+    pub fn is_of_motion(&self) -> bool {
+        let is_torque = |column: &usize| COLUMNS[*column].starts_with("tau");
+        self.channel.is_none() && !self.columns.iter().any(is_torque)
+    }
+
     /// What the effect adds to the torque that is logged of its joint [N m, N], sample by sample:
     /// 0 for an effect on another channel.
     pub fn torque(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<f64> {

@@ -8,9 +8,9 @@ fn main() -> ExitCode {
 }
 
 /// A signal of a log is some hundred kilobytes. The allocator of glibc gives blocks of that size
-/// back to the system, which clears them for the next signal: a fifth of a diagnosis' time. It
-/// keeps blocks as large as the largest that was ever freed, below 32 MiB; nothing is written to
-/// this one. Other allocators take no notice.
+/// back to the system, which clears them for the next signal: up to a fifth of a diagnosis' time.
+/// It keeps blocks as large as the largest that was ever freed, below 32 MiB; nothing is written
+/// to this one. Other allocators take no notice.
 fn keep_freed_memory() {
     drop(std::hint::black_box(Vec::<u8>::with_capacity(31 << 20)));
 }

@@ -168,7 +168,8 @@ impl JointLaw {
         Some(Response::of(self.joint.0, added, gradient.iter().map(by)))
     }
 
-    fn asked(&self, motion: &Motion<'_>, values: &[f64], asked: Asked) -> Response {
+    /// Its torque, with derivatives if these are asked for or come with it.
+    fn response_of(&self, motion: &Motion<'_>, values: &[f64], asked: Asked) -> Response {
         let nothing = || {
             let none = vec![0.0; motion.signals.samples()];
             Response::of(self.joint.0, none.clone(), values.iter().map(|_| none.clone()))
@@ -232,11 +233,11 @@ impl Law for JointLaw {
     }
 
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
-        self.asked(&motion, values, Asked::Gradient)
+        self.response_of(&motion, values, Asked::Gradient)
     }
 
     fn torque(&self, motion: Motion<'_>, values: &[f64]) -> Response {
-        Response { gradient: Vec::new(), ..self.asked(&motion, values, Asked::Torque) }
+        Response { gradient: Vec::new(), ..self.response_of(&motion, values, Asked::Torque) }
     }
 }
 

@@ -125,6 +125,22 @@ fn every_law_vanishes_at_its_nominal_values() {
     }
 }
 
+/// A law is of motion alone if other torques and another drive leave it as it is.
+#[test]
+fn laws_of_motion_do_not_notice_torques() {
+    let [one, mut other] = [motion(400, 0.01), motion(400, 0.01)];
+    for place in [4, 5, 6, 10, 11] {
+        other.columns[place].iter_mut().for_each(|torque| *torque = 0.3 - 0.6 * *torque);
+    }
+    let other = JointSamples { drive: Drive::default(), ..other.samples() };
+    for law in laws().iter().filter(|law| law.channel().is_none()) {
+        let values: Vec<f64> = law.parameters.iter().map(typical).collect();
+        let is_same = law.torque(&one.samples(), &values) == law.torque(&other, &values);
+        assert_eq!(law.is_of_motion(), is_same, "{}", law.name);
+    }
+    assert!(laws().iter().all(|law| law.channel().is_none() || !law.is_of_motion()));
+}
+
 #[test]
 fn gradients_are_those_of_differences() {
     let motion = motion(1500, 0.002);

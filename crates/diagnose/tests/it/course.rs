@@ -55,9 +55,9 @@ fn a_change_is_held_against_what_is_left() {
     }
 }
 
-/// Friction that is smaller in the held-out log is off by its error, and not refuted: half of it has
-/// its name, and nearly none of it, for which that log does not ask, is not taken away. Any other
-/// law is.
+/// Friction that is smaller in the held-out log is off by its error, and not refuted: half of it
+/// has its name, and nearly none of it, for which that log does not ask, is not taken away. Any
+/// other law is.
 #[test]
 fn held_out_logs_ask_for_all_but_friction() {
     let found = |share: f64, law: &dyn Fn([f64; 3]) -> f64| {

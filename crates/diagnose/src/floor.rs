@@ -38,9 +38,7 @@ fn floor(
     disturbed: &[Vec<f64>],
 ) -> NoiseFloor {
     let gain = signals.noise_gain();
-    let q: Vec<Vec<f64>> = signals.q.iter().map(|q| signals.cell_means(q)).collect();
-    let end = q.first().map_or(0, Vec::len);
-    let laps = Laps::find(&q, signals.log_step_s, 0..end).ok();
+    let laps = signals.laps();
     let of = |equation: usize| {
         // No torque is measured of springs.
         let measured = signals.measured.get(equation);

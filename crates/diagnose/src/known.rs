@@ -3,7 +3,7 @@
 //! A drive passes each reversal late by a time of its own: it sticks for milliseconds, and its
 //! readings are of another time than its torque. While it rests, its friction is anything up to
 //! that of sliding. Noise is taken to be even in time, so that rows count by what is not known of
-//! them.
+//! them. That is of the motion and repeats with it: many laps tell no more of it than one.
 
 use super::nominal::{Nominal, Phi};
 use super::rows::{PerJoint, torques as torques_of};
@@ -16,6 +16,8 @@ use denavit_numerics::derivative;
 /// For each joint what each row of a log counts, from 0 to 1.
 pub(super) fn weights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
     let heights = heights(nominal, signals, phi);
+    let samples = signals.samples() as f64 * signals.step_s / signals.log_step_s;
+    let laps = signals.laps().map_or(1.0, |laps| samples / laps.period);
     let of_joint = |(joint, heights): (usize, &Vec<f64>)| {
         let level = policy::NOISE_LEVEL * nominal.usual[joint][0];
         let weight = |unknown: &f64| {
@@ -25,7 +27,8 @@ pub(super) fn weights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> Pe
             late(signals, JointIndex(joint), heights).iter().map(|by| by.abs()).collect();
         let [late, resting] =
             [signals.rows_of(&late), resting(signals, JointIndex(joint), heights)];
-        let unknown: Vec<f64> = late.iter().zip(resting).map(|(a, b)| a.hypot(b)).collect();
+        let of_lap = late.iter().zip(resting).map(|(a, b)| a.hypot(b));
+        let unknown: Vec<f64> = of_lap.map(|unknown| laps.sqrt() * unknown).collect();
         even(with_ringing(&unknown).iter().map(weight).collect())
     };
     heights.iter().enumerate().map(of_joint).collect()
@@ -118,15 +121,15 @@ mod tests {
     const COULOMB: f64 = 1.0;
     const HZ: f64 = 0.5;
 
-    /// A sled that an exact torque moves in waves of a period of 2 s.
-    fn waves() -> MeasuredLog {
+    /// A sled that an exact torque moves in waves of a period of 2 s, for so many samples.
+    fn waves(samples: i32) -> MeasuredLog {
         let at = |k: i32| TAU * HZ * 0.002 * f64::from(k);
-        let q: Vec<f64> = (0..8000).map(|k| 0.2 * at(k).sin()).collect();
+        let q: Vec<f64> = (0..samples).map(|k| 0.2 * at(k).sin()).collect();
         let torque = |k: i32| {
             let acceleration = -0.2 * (TAU * HZ).powi(2) * at(k).sin();
             2.0 * acceleration + COULOMB * at(k).cos().signum()
         };
-        let tau = Some((0..8000).map(torque).collect());
+        let tau = Some((0..samples).map(torque).collect());
         let joints = vec![JointSignals { q, tau, ..JointSignals::default() }];
         MeasuredLog { file: "waves".into(), step_s: 0.002, joints, ..MeasuredLog::default() }
     }
@@ -135,7 +138,7 @@ mod tests {
     fn rows_at_reversals_count_less_and_late_ones_lack_an_impulse() {
         let robot = denavit_codegen::model::read("sled", SLED.as_bytes()).expect("a model");
         let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
-        let signals = Signals::new(waves(), Filters::of_torques(10.0)).expect("long enough");
+        let signals = Signals::new(waves(8000), Filters::of_torques(10.0)).expect("long enough");
         let logs = [signals];
         let nominal = Nominal::new(&model).moving_as(&logs);
         let ([signals], phi) = (&logs, nominal.phi(&vec![0.0; nominal.len()]));
@@ -163,5 +166,25 @@ mod tests {
             let wanted = -policy::LATE_S * height * (to - from);
             assert!((impulse - wanted).abs() < 1e-3 * policy::LATE_S, "{k}: {impulse} {wanted}");
         }
+    }
+
+    /// What rows next to reversals count together, of a log of so many samples.
+    fn told_at_reversals(samples: i32) -> f64 {
+        let robot = denavit_codegen::model::read("sled", SLED.as_bytes()).expect("a model");
+        let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
+        let signals = Signals::new(waves(samples), Filters::of_torques(10.0)).expect("long enough");
+        let logs = [signals];
+        let nominal = Nominal::new(&model).moving_as(&logs);
+        let ([signals], phi) = (&logs, nominal.phi(&vec![0.0; nominal.len()]));
+        let rates = signals.at_rows(&signals.qd[0]);
+        let weights = &weights(&nominal, signals, &phi)[0];
+        let near = rates.iter().zip(weights).filter(|(rate, _)| rate.abs() < 0.03);
+        near.map(|(_, weight)| weight * weight).sum()
+    }
+
+    #[test]
+    fn laps_tell_no_more_of_reversals_than_one_lap() {
+        let [few, many] = [5000, 20_000].map(told_at_reversals);
+        assert!((many / few - 1.0).abs() < 0.25, "{few} {many}");
     }
 }

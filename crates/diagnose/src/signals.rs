@@ -11,7 +11,7 @@ use super::standstill::{self, Rest};
 use crate::policy::signals::{ENOUGH_ROWS, LEAST_RATE_HZ, LEAST_ROWS, ROWS_PER_PERIOD};
 use denavit_evidence::policy;
 use denavit_measure::JointIndex;
-use denavit_measure::condition::{Butterworth, STENCIL, acceleration, rate};
+use denavit_measure::condition::{Butterworth, Laps, STENCIL, acceleration, rate};
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::{Random, between, cubic, derivative};
 use std::ops::Range;
@@ -162,12 +162,12 @@ impl Signals {
         };
         let mut randoms = [Random::new(1), Random::new(2)];
         for joint in joints {
-            // An encoder's error is anywhere within its step. Where angles do not tell their steps,
-            // their noise counts as such.
+            // An encoder's error is anywhere within its step. Noise of angles counts as such where
+            // it is larger, or all that is known.
             let of_noise = |angle: &Vec<f64>| 12.0_f64.sqrt() * white_noise(angle);
-            let step = joint.step.unwrap_or_else(|| of_noise(&joint.q));
+            let step = joint.step.unwrap_or(0.0).max(of_noise(&joint.q));
             let motor = joint.motor.as_ref();
-            let motor_step = joint.motor_step.or(motor.map(of_noise)).unwrap_or(0.0);
+            let motor_step = joint.motor_step.unwrap_or(0.0).max(motor.map_or(0.0, of_noise));
             let mut noise = |random: usize, samples: usize, step: f64| {
                 let uniform = |_| step * (randoms[random].uniform() - 0.5);
                 let mut noise: Vec<f64> = (0..samples).map(uniform).collect();
@@ -418,6 +418,13 @@ impl Signals {
 
     fn row_samples(&self, signal: &[f64]) -> Vec<f64> {
         signal[self.rows.range.clone()].iter().copied().step_by(self.rows.stride).collect()
+    }
+
+    /// The laps of the motion, if it repeats.
+    pub(super) fn laps(&self) -> Option<Laps> {
+        let q: Vec<Vec<f64>> = self.q.iter().map(|q| self.cell_means(q)).collect();
+        let end = q.first().map_or(0, Vec::len);
+        Laps::find(&q, self.log_step_s, 0..end).ok()
     }
 
     /// The share of the deviation of white noise that passes the filter.

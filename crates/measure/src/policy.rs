@@ -142,6 +142,13 @@ pub(crate) mod check {
 
     /// See [`ABOVE_ROUNDING`].
     pub(crate) const IN_STEPS: f64 = 0.995;
+
+    /// The last printed digit over a step of an encoder, at most: two of five differences of that
+    /// size are near a multiple by chance, and not nearly all.
+    pub(crate) const DIGIT: f64 = 0.2;
+
+    /// By how much whole digits may be off, for rounding.
+    pub(crate) const ROUNDED: f64 = 1e-9;
 }
 
 /// Of `log/fault.rs`.

@@ -3,8 +3,8 @@
 use super::fault::{LogFault, LogRemark, Suspicion};
 use super::{JointSignals, MeasuredLog};
 use crate::policy::check::{
-    ABOVE_ROUNDING, FAR_BEYOND, FASTEST_STEP_S, HOUR_S, IN_STEPS, LARGEST_ANGLE_RAD, MOST_STEPS,
-    OTHER, ROUNDING, SAME, SATURATED, SLOWEST_STEP_S, WHOLE,
+    ABOVE_ROUNDING, DIGIT, FAR_BEYOND, FASTEST_STEP_S, HOUR_S, IN_STEPS, LARGEST_ANGLE_RAD,
+    MOST_STEPS, OTHER, ROUNDED, ROUNDING, SAME, SATURATED, SLOWEST_STEP_S, WHOLE,
 };
 use denavit_numerics::products;
 use denavit_plants::regression::RegressionJoint;
@@ -236,6 +236,12 @@ const FEWEST_STEPS: usize = 5;
 /// Steps that the smallest difference of a position that is always fast may be.
 const MOST_OF_LEAST: u32 = 5;
 
+/// How often a step is found anew, from differences that are twice as large.
+const REFINED: i32 = 10;
+
+/// Digits after the point that a log may be printed with.
+const MOST_DIGITS: i32 = 9;
+
 /// The step of an encoder: what all differences of neighbouring samples are multiples of.
 pub(super) fn encoder_step(q: &[f64]) -> Option<f64> {
     let differences = q.windows(2).map(|pair| (pair[1] - pair[0]).abs());
@@ -248,30 +254,43 @@ pub(super) fn encoder_step(q: &[f64]) -> Option<f64> {
         return None;
     }
     let least = moved.iter().copied().fold(f64::INFINITY, f64::min);
-    (1..=MOST_OF_LEAST).find_map(|times| of_multiples(&moved, least / f64::from(times), size))
+    let rounding = 1e-9 * size;
+    let of = |off: f64| {
+        let step = |times| of_multiples(&moved, least / f64::from(times), off);
+        (1..=MOST_OF_LEAST).find_map(step)
+    };
+    let in_digits = |digit: f64| of(digit).filter(|step| digit <= DIGIT * step);
+    // Digits are multiples of themselves: steps above them are looked for first.
+    let of_digits = printed_digit(q).filter(|_| moved.len() >= FEWEST_MOVES).and_then(in_digits);
+    of_digits.or_else(|| of(2.0 * rounding).filter(|step| *step >= ABOVE_ROUNDING * rounding))
 }
 
-/// The step near a first guess that differences are multiples of; none if they are not, or if what
-/// printed positions of this size are rounded to is no less.
-fn of_multiples(moved: &[f64], guess: f64, size: f64) -> Option<f64> {
-    // Larger multiples know the step better than the digits of one.
-    let step = (1..=3).fold(guess, |step, digits| {
-        let small = moved.iter().filter(|&&d| d < 10.0_f64.powi(digits) * step);
+/// The last decimal digit with which all positions are printed; none where they have more.
+fn printed_digit(q: &[f64]) -> Option<f64> {
+    let is_whole = |value: f64| (value - value.round()).abs() <= ROUNDED * value.abs().max(1.0);
+    let has = |scale: &f64| q.iter().all(|q| is_whole(q * scale));
+    (0..MOST_DIGITS).map(|digits| 10.0_f64.powi(digits)).find(has).map(f64::recip)
+}
+
+/// The step near a first guess that differences are multiples of, each off by no more than that;
+/// none if they are not.
+fn of_multiples(moved: &[f64], guess: f64, off: f64) -> Option<f64> {
+    // Larger multiples know the step better than smaller ones, which say how many they are.
+    let step = (0..=REFINED).fold(guess, |step, finer| {
+        let small = moved.iter().filter(|&&d| d < 1.5 * 2.0_f64.powi(finer) * step);
         let (sum, count) = small.fold((0.0, 0.0), |(sum, count), d| {
             let times = (d / step).round();
             (sum + d * times, count + times * times)
         });
-        sum / count
+        if count > 0.0 { sum / count } else { step }
     });
-    let rounding = 1e-9 * size;
     let is_multiple = |d: &&f64| {
         let times = **d / step;
-        (times - times.round()).abs() < WHOLE + 2.0 * rounding / step && times < MOST_STEPS
+        (times - times.round()).abs() < WHOLE + off / step && times < MOST_STEPS
     };
     // Of a smooth signal hardly any difference is a multiple of its smallest one.
     let multiples = moved.iter().filter(is_multiple).count();
-    (step >= ABOVE_ROUNDING * rounding && multiples as f64 > IN_STEPS * moved.len() as f64)
-        .then_some(step)
+    (multiples as f64 > IN_STEPS * moved.len() as f64).then_some(step)
 }
 
 #[cfg(test)]
@@ -298,9 +317,13 @@ mod tests {
             let found = encoder_step(&sampled(step, None)).expect("steps");
             assert!((found / step - 1.0).abs() < 1e-9, "{step}: {found}");
         }
-        let printed = sampled(TAU / 20_000.0, Some(7));
-        let found = encoder_step(&printed).expect("steps");
-        assert!((found / (TAU / 20_000.0) - 1.0).abs() < 1e-4, "{found}");
+        // Down to digits that are an eighth of a step.
+        for (step, digits) in
+            [(TAU / 20_000.0, 7), (TAU / 262_144.0, 6), (7.964_8e-6, 6), (1.7e-3, 4)]
+        {
+            let found = encoder_step(&sampled(step, Some(digits))).expect("steps");
+            assert!((found / step - 1.0).abs() < 1e-4, "{step}: {found}");
+        }
     }
 
     /// Ten steps in three thousand samples.
@@ -319,6 +342,11 @@ mod tests {
     #[test]
     fn smooth_noisy_and_resting_signals_have_none() {
         assert_eq!(encoder_step(&sampled(0.0, None)), None);
+        // Digits are all the steps that a printed signal has.
+        for digits in [4, 5, 6] {
+            let found = encoder_step(&sampled(0.0, Some(digits))).expect("digits");
+            assert!((found * 10.0_f64.powi(digits) - 1.0).abs() < 1e-6, "{digits}: {found}");
+        }
         let mut random = denavit_numerics::Random::new(9);
         let noisy: Vec<f64> =
             sampled(0.0, None).into_iter().map(|q| q + 1e-4 * random.normal()).collect();

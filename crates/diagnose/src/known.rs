@@ -134,16 +134,24 @@ mod tests {
         MeasuredLog { file: "waves".into(), step_s: 0.002, joints, ..MeasuredLog::default() }
     }
 
-    #[test]
-    fn rows_at_reversals_count_less_and_late_ones_lack_an_impulse() {
+    /// What a test finds with the model of the sled, and waves of so many samples.
+    fn in_waves<T>(samples: i32, find: impl Fn(&Nominal<'_>, &Signals, &Phi) -> T) -> T {
         let robot = denavit_codegen::model::read("sled", SLED.as_bytes()).expect("a model");
         let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
-        let signals = Signals::new(waves(8000), Filters::of_torques(10.0)).expect("long enough");
+        let signals = Signals::new(waves(samples), Filters::of_torques(10.0)).expect("long enough");
         let logs = [signals];
         let nominal = Nominal::new(&model).moving_as(&logs);
         let ([signals], phi) = (&logs, nominal.phi(&vec![0.0; nominal.len()]));
+        find(&nominal, signals, &phi)
+    }
 
-        let [weights] = &weights(&nominal, signals, &phi)[..] else { panic!("one joint") };
+    #[test]
+    fn rows_at_reversals_count_less_and_late_ones_lack_an_impulse() {
+        in_waves(8000, rows_and_impulses);
+    }
+
+    fn rows_and_impulses(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) {
+        let [weights] = &weights(nominal, signals, phi)[..] else { panic!("one joint") };
         for (t, weight) in signals.at_rows(&signals.t).iter().zip(weights) {
             // The rate is that of a cosine, and 0 a quarter of a period after its extremes.
             let from_reversal_s =
@@ -156,7 +164,7 @@ mod tests {
         }
 
         // Of a step of friction that is late by a time, that time its height is missing.
-        let [late] = &late_reversals(&nominal, signals, &phi)[..] else { panic!("one joint") };
+        let [late] = &late_reversals(nominal, signals, phi)[..] else { panic!("one joint") };
         let height = COULOMB + policy::STEP * nominal.usual[0][0];
         let half = (1.0 / HZ / signals.step_s / 2.0) as usize;
         for (k, samples) in late.chunks_exact(half).enumerate() {
@@ -168,23 +176,15 @@ mod tests {
         }
     }
 
-    /// What rows next to reversals count together, of a log of so many samples.
-    fn told_at_reversals(samples: i32) -> f64 {
-        let robot = denavit_codegen::model::read("sled", SLED.as_bytes()).expect("a model");
-        let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
-        let signals = Signals::new(waves(samples), Filters::of_torques(10.0)).expect("long enough");
-        let logs = [signals];
-        let nominal = Nominal::new(&model).moving_as(&logs);
-        let ([signals], phi) = (&logs, nominal.phi(&vec![0.0; nominal.len()]));
-        let rates = signals.at_rows(&signals.qd[0]);
-        let weights = &weights(&nominal, signals, &phi)[0];
-        let near = rates.iter().zip(weights).filter(|(rate, _)| rate.abs() < 0.03);
-        near.map(|(_, weight)| weight * weight).sum()
-    }
-
     #[test]
     fn laps_tell_no_more_of_reversals_than_one_lap() {
-        let [few, many] = [5000, 20_000].map(told_at_reversals);
+        let near_reversals = |nominal: &Nominal<'_>, signals: &Signals, phi: &Phi| -> f64 {
+            let rates = signals.at_rows(&signals.qd[0]);
+            let weights = &weights(nominal, signals, phi)[0];
+            let near = rates.iter().zip(weights).filter(|(rate, _)| rate.abs() < 0.03);
+            near.map(|(_, weight)| weight * weight).sum()
+        };
+        let [few, many] = [5000, 20_000].map(|samples| in_waves(samples, near_reversals));
         assert!((many / few - 1.0).abs() < 0.25, "{few} {many}");
     }
 }

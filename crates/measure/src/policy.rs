@@ -147,8 +147,11 @@ pub(crate) mod check {
     /// size are near a multiple by chance, and not nearly all.
     pub(crate) const DIGIT: f64 = 0.2;
 
-    /// By how much whole digits may be off, for rounding.
+    /// By how much whole digits and positions may be off, for rounding,
     pub(crate) const ROUNDED: f64 = 1e-9;
+
+    /// and positions in single precision: half of their last binary digit.
+    pub(crate) const SINGLE: f64 = 6e-8;
 }
 
 /// Of `log/fault.rs`.

@@ -303,6 +303,31 @@ fn saturation_and_encoder_steps_are_remarked() {
     assert_eq!(log.joints[1].step, None);
 }
 
+/// Whatever a log is mapped and repaired by: degrees with five digits, single precision, a row that
+/// is missing, times that scatter so that it is brought to equal distances, a cell without a number.
+#[test]
+fn steps_are_those_of_the_log_before_any_repair() {
+    let step_deg = 360.0 / 262_144.0;
+    let stepped = |q: f64| (q.to_degrees() / step_deg).round() * step_deg;
+    let printed = |q: f64| (q * 1e5).round() / 1e5;
+    let scatter = |k: usize| 0.05 * STEP_S * (1.7 * k as f64).sin();
+    let mut made = Made::new().each(|k, row| {
+        row[0] += scatter(k);
+        row[1] = printed(stepped(row[1]));
+        row[2] = f64::from(stepped(row[2]) as f32);
+    });
+    made.rows.remove(700);
+    made.rows[300][1] = f64::NAN;
+    let scaled = |name: &String| format!(r#""q_{name}": {{"scale": {}}}"#, 1f64.to_radians());
+    let map: Vec<String> = made.names.iter().map(scaled).collect();
+    let log = made.read_as(&made.text(), &format!("{{{}}}", map.join(", "))).expect("mended");
+    assert!(log.remarks.iter().any(|remark| matches!(remark, LogRemark::Resampled { .. })));
+    for joint in &log.joints {
+        let found = joint.step.expect("steps are seen").to_degrees();
+        assert!((found / step_deg - 1.0).abs() < 1e-4, "{found}");
+    }
+}
+
 /// A geared model whose file says that logs have torques of motors: 50 motor turns a joint turn.
 #[test]
 fn one_side_of_the_gears_is_decided_in_one_place() {

@@ -4,7 +4,7 @@ use super::fault::{LogFault, LogRemark, Suspicion};
 use super::{JointSignals, MeasuredLog};
 use crate::policy::check::{
     ABOVE_ROUNDING, DIGIT, FAR_BEYOND, FASTEST_STEP_S, HOUR_S, IN_STEPS, LARGEST_ANGLE_RAD,
-    MOST_STEPS, OTHER, ROUNDED, ROUNDING, SAME, SATURATED, SLOWEST_STEP_S, WHOLE,
+    MOST_STEPS, OTHER, ROUNDED, ROUNDING, SAME, SATURATED, SINGLE, SLOWEST_STEP_S, WHOLE,
 };
 use denavit_numerics::products;
 use denavit_plants::regression::RegressionJoint;
@@ -242,10 +242,12 @@ const REFINED: i32 = 10;
 /// Digits after the point that a log may be printed with.
 const MOST_DIGITS: i32 = 9;
 
-/// The step of an encoder: what all differences of neighbouring samples are multiples of.
+/// The step of an encoder: what all differences of neighbouring samples are multiples of. Samples
+/// without a number are passed over.
 pub(super) fn encoder_step(q: &[f64]) -> Option<f64> {
+    let q: Vec<f64> = q.iter().copied().filter(|q| !q.is_nan()).collect();
     let differences = q.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    let size = range(q).into_iter().fold(0.0, |size: f64, value| size.max(value.abs()));
+    let size = range(&q).into_iter().fold(0.0, |size: f64, value| size.max(value.abs()));
     let tiny = 1e-12 * size.max(1e-6);
     let moved: Vec<f64> = differences.filter(|&d| d > tiny).take(20_000).collect();
     // where a position rests but for some steps, few tell their size
@@ -254,14 +256,16 @@ pub(super) fn encoder_step(q: &[f64]) -> Option<f64> {
         return None;
     }
     let least = moved.iter().copied().fold(f64::INFINITY, f64::min);
-    let rounding = 1e-9 * size;
+    let digit = printed_digit(&q);
+    let is_single = digit.is_none() && q.iter().all(|&q| f64::from(q as f32) == q);
+    let rounding = size * if is_single { SINGLE } else { ROUNDED };
     let of = |off: f64| {
         let step = |times| of_multiples(&moved, least / f64::from(times), off);
         (1..=MOST_OF_LEAST).find_map(step)
     };
     let in_digits = |digit: f64| of(digit).filter(|step| digit <= DIGIT * step);
     // Digits are multiples of themselves: steps above them are looked for first.
-    let of_digits = printed_digit(q).filter(|_| moved.len() >= FEWEST_MOVES).and_then(in_digits);
+    let of_digits = digit.filter(|_| moved.len() >= FEWEST_MOVES).and_then(in_digits);
     of_digits.or_else(|| of(2.0 * rounding).filter(|step| *step >= ABOVE_ROUNDING * rounding))
 }
 

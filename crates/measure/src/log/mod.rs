@@ -192,13 +192,14 @@ pub fn read_opened(
     mapping: &ColumnMapping,
 ) -> Result<MeasuredLog, Error> {
     let failed = |faults| Error::from(LogFaults { file: file.to_owned(), faults });
-    let wanted = Wanted::new(&log, robot, mapping).map_err(failed)?;
+    let mut wanted = Wanted::new(&log, robot, mapping).map_err(failed)?;
     let header = std::mem::take(&mut log.header);
     let logged: Vec<String> = log.columns.iter().map(|one| one.name.clone()).collect();
     let read = log.read(&wanted.places(), &wanted.clocks());
     let mut table = read.map_err(|error| of_file(file, error))?;
-    for (values, column) in table.columns.iter_mut().zip(&wanted.columns) {
+    for (values, column) in table.columns.iter_mut().zip(&mut wanted.columns) {
         let WantedColumn { scale, offset, .. } = *column;
+        column.step = column.goes_to.is_position().then(|| check::encoder_step(values)).flatten();
         if scale != 1.0 || offset != 0.0 {
             values.iter_mut().for_each(|value| *value = scale * *value + offset);
         }

@@ -2,7 +2,7 @@
 
 use super::fault::{LogFault, Suspicion};
 use super::mapping::{ColumnMapping, ColumnSource, Mapped};
-use super::{LogOf, LogRemark, MeasuredLog, TORQUE_SIDE, check, jumps};
+use super::{LogOf, LogRemark, MeasuredLog, TORQUE_SIDE, jumps};
 use denavit_codegen::expr::text::nearest;
 use denavit_codegen::model::TorqueSide;
 use denavit_logs::{Column, Found, Log, Table};
@@ -19,6 +19,8 @@ pub(super) struct WantedColumn {
     pub(super) scale: f64,
     pub(super) offset: f64,
     pub(super) goes_to: Target,
+    /// The step of its encoder, in the log's unit: what mapping and repair do hides it.
+    pub(super) step: Option<f64>,
 }
 
 /// Where the values of a column go.
@@ -31,6 +33,13 @@ pub(super) enum Target {
     Contact(usize, usize),
     /// Link, of those that the log has wrenches of; force or moment about an axis.
     Link(usize, usize),
+}
+
+impl Target {
+    /// Of a joint or of a motor before its spring.
+    pub(super) fn is_position(self) -> bool {
+        matches!(self, Self::Joint(_, 0 | 6))
+    }
 }
 
 pub(super) struct Wanted {
@@ -197,7 +206,8 @@ impl Wanted {
                         *is_there = true;
                     }
                     let (scale, offset, goes_to) = (source.scale, source.offset, ours.goes_to);
-                    columns.push(WantedColumn { name, place, scale, offset, goes_to });
+                    let step = None;
+                    columns.push(WantedColumn { name, place, scale, offset, goes_to, step });
                 }
                 Found::Several(several) => {
                     let several: Vec<String> =
@@ -245,8 +255,8 @@ impl Wanted {
 
     /// Positions of joints and motors that jump.
     pub(super) fn jumps(&self, table: &Table) -> Vec<Suspicion> {
-        let is_position = |column: &WantedColumn| matches!(column.goes_to, Target::Joint(_, 0 | 6));
-        let columns = self.columns.iter().enumerate().filter(|(_, column)| is_position(column));
+        let columns = self.columns.iter().enumerate();
+        let columns = columns.filter(|(_, column)| column.goes_to.is_position());
         columns.filter_map(|(place, column)| jumps::jump(table, place, &column.name)).collect()
     }
 
@@ -278,20 +288,15 @@ impl Wanted {
                         }
                     }
                     let own = &mut log.joints[joint];
+                    let step = column.step.map(|step| step * column.scale.abs());
                     match signal {
-                        0 => {
-                            own.step = check::encoder_step(&values);
-                            own.q = values;
-                        }
+                        0 => (own.step, own.q) = (step, values),
                         1 => own.qd = Some(values),
                         2 => own.qdd = Some(values),
                         3 => own.tau = Some(values),
                         4 => commanded[joint] = Some(values),
                         5 => own.reference = Some(values),
-                        _ => {
-                            own.motor_step = check::encoder_step(&values);
-                            own.motor = Some(values);
-                        }
+                        _ => (own.motor_step, own.motor) = (step, Some(values)),
                     }
                 }
             }

@@ -32,6 +32,7 @@ pub const SHIPPED: &[(&str, &str)] = &shipped![
     "coupled_viscous",
     "dahl",
     "damper",
+    "drive_lag",
     "encoder_eccentricity",
     "gear_efficiency",
     "gravity",

@@ -189,7 +189,8 @@ pub struct Transmission {
     pub joint_friction: ExprId,
 }
 
-/// What is logged of a true quantity: value(t - delay), then a first-order lag.
+/// What is logged of a true quantity, or what is true of a logged one: value(t - delay), then a
+/// first-order lag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Measured {
     /// Which quantity.
@@ -197,7 +198,7 @@ pub struct Measured {
     /// Whether `value` is what is true where the channel's symbol is what is logged: a drive that
     /// gives less than the torque that was demanded of it.
     pub is_inverse: bool,
-    /// What would be logged without delay and lag: the channel's symbol if nothing changes it.
+    /// What it would be without delay and lag: the channel's symbol if nothing changes it.
     pub value: ExprId,
     /// Delay \[s\]; negative if the channel runs ahead of the others.
     pub delay_s: ExprId,

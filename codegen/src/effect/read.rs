@@ -5,7 +5,7 @@ use super::linear::{depends, linear};
 use super::spelling::JointUnit;
 use super::{
     Confusion, Effect, EffectKind, EffectParameter, EffectSite, EffectState, FORMAT, Law, Measured,
-    Occurrence, SpringSide,
+    Occurrence, SpringSide, Transmission,
 };
 use crate::expr::{Dag, ExprId, SymbolClass, substitute};
 use crate::model::check::Scope;
@@ -142,11 +142,14 @@ fn note_linear(
     exprs: &[ExprId],
 ) {
     let symbols: Vec<ExprId> = parameters.iter().map(|parameter| parameter.symbol).collect();
-    // a state answers to its parameters in a way that no expression says
+    // a state, and what is late, answer to their parameters in a way that no expression says
     let mut hidden: Vec<ExprId> =
         states.iter().flat_map(|state| [state.rate, state.initial]).collect();
-    if let Law::Measured(Measured { transmission: Some(one), .. }) = law {
-        hidden.extend([one.swing_s, one.damping, one.play, one.drag, one.joint_friction]);
+    if let Law::Measured(Measured { transmission, delay_s, lag_s, .. }) = law {
+        hidden.extend([*delay_s, *lag_s]);
+        let of =
+            |one: &Transmission| [one.swing_s, one.damping, one.play, one.drag, one.joint_friction];
+        hidden.extend(transmission.iter().flat_map(of));
     }
     let is_linear = linear(dag, exprs, &symbols);
     for (parameter, is_linear) in parameters.iter_mut().zip(is_linear) {

@@ -20,6 +20,8 @@ enum Acts {
     Demand,
     /// It delays the torque that is logged.
     Delay,
+    /// It makes a drive follow the torque that is logged.
+    Followed,
     /// It is a transmission with play (`drive_law.rs`).
     Play,
     /// It is a transmission that is a spring and a damper (`elastic_law.rs`).
@@ -43,6 +45,20 @@ pub(super) struct JointLaw {
     acts: Acts,
     /// What the model says of its parameters.
     pub(super) beliefs: Vec<Belief>,
+}
+
+/// What of a response the friction of drives that rest does not balance.
+fn unbalanced(motion: &Motion<'_>, mut response: Response) -> Response {
+    let joints = motion.signals.joints();
+    for (place, equation) in response.equations.iter().enumerate() {
+        let mut by: Vec<&mut [f64]> =
+            response.gradient.iter_mut().map(|all| all[place].as_mut_slice()).collect();
+        if *equation < joints {
+            let torque = &mut response.torque[place];
+            motion.signals.unbalanced(JointIndex(*equation), torque, &mut by);
+        }
+    }
+    response
 }
 
 /// The samples of a joint in a motion: of its drive, which may be before a spring.
@@ -81,6 +97,7 @@ impl JointLaw {
             Some(Channel::Position) if law.is_transmission() => Acts::Sprung,
             Some(Channel::Torque) if law.has_play() => Acts::Play,
             Some(Channel::Torque) if law.is_transmission() => Acts::Elastic,
+            Some(Channel::Torque) if law.follows_log() => Acts::Followed,
             Some(Channel::Torque) if law.is_inverse() => Acts::Demand,
             Some(Channel::Torque) if law.is_delay() => Acts::Delay,
             None | Some(Channel::Torque) => Acts::Torque,
@@ -142,15 +159,22 @@ impl JointLaw {
     /// as that is beyond the clip, and what is left is then that of the model at the clip. Of what
     /// was demanded beyond a clip it says nothing.
     fn demanded(&self, motion: &Motion<'_>, values: &[f64]) -> Response {
-        let measured = self.measured(motion);
-        let samples = JointSamples { tau: &measured, ..samples(motion, self.joint, None) };
-        let (mut torque, mut gradient) = self.law.torque_and_gradient(&samples, values);
-        let lacks: Vec<f64> = torque.iter().copied().filter(|lack| *lack != 0.0).collect();
+        let mut response = self.followed(motion, values);
+        let lacks: Vec<f64> =
+            response.torque[0].iter().copied().filter(|lack| *lack != 0.0).collect();
         let noise = motion.signals.torque_noise[self.joint.0];
         if rms(&lacks) < OF_NOISE * noise {
-            torque.fill(0.0);
-            gradient.iter_mut().for_each(|column| column.fill(0.0));
+            let columns = response.torque.iter_mut().chain(response.gradient.iter_mut().flatten());
+            columns.for_each(|column| column.fill(0.0));
         }
+        response
+    }
+
+    /// What was measured more than a drive gives that follows it.
+    fn followed(&self, motion: &Motion<'_>, values: &[f64]) -> Response {
+        let measured = self.measured(motion);
+        let samples = JointSamples { tau: &measured, ..samples(motion, self.joint, None) };
+        let (torque, gradient) = self.law.torque_and_gradient(&samples, values);
         Response::of(self.joint.0, torque, gradient)
     }
 
@@ -181,13 +205,18 @@ impl JointLaw {
             (Acts::Delay, _) => {
                 self.undelayed(motion, values).or_else(|| Some(self.added(motion, values)))
             }
+            (Acts::Followed, _) => Some(self.followed(motion, values)),
             (Acts::Play, _) => self.through_play(motion, values, asked),
             (Acts::Elastic, _) => self.through_spring(motion, values, asked),
             (Acts::Reading, _) => Some(self.read(motion, values)),
             (Acts::Gap | Acts::Sprung, Asked::Gradient) => self.behind(motion, values),
             (Acts::Gap | Acts::Sprung, Asked::Torque) => self.behind_torque(motion, values),
         };
-        found.unwrap_or_else(nothing)
+        let found = found.unwrap_or_else(nothing);
+        match self.acts {
+            Acts::Torque | Acts::Spring => found,
+            _ => unbalanced(motion, found),
+        }
     }
 }
 
@@ -204,9 +233,14 @@ impl Law for JointLaw {
         match self.acts {
             Acts::Torque => self.law.follows_accelerations(),
             // A joint on a spring is behind in proportion to its load, and to the noise of that.
-            Acts::Delay | Acts::Play | Acts::Reading | Acts::Sprung => true,
+            Acts::Play | Acts::Reading | Acts::Sprung => true,
             // How a joint falls through its gap is integrated, and has no noise of accelerations.
-            Acts::Spring | Acts::Demand | Acts::Elastic | Acts::Gap => false,
+            Acts::Spring
+            | Acts::Demand
+            | Acts::Followed
+            | Acts::Delay
+            | Acts::Elastic
+            | Acts::Gap => false,
         }
     }
 
@@ -229,7 +263,15 @@ impl Law for JointLaw {
         let cut = measured.iter().zip(&torque).filter(is_cut);
         let given: Vec<f64> = cut.map(|(all, less)| all - less).collect();
         let share = given.len() as f64 / measured.len().max(1) as f64;
-        Unpredicted { share, left: rms(&given).powi(2) }
+        Unpredicted { share, left: rms(&given).powi(2), ..Unpredicted::default() }
+    }
+
+    fn follows(&self) -> Option<JointIndex> {
+        (self.acts == Acts::Followed).then_some(self.joint)
+    }
+
+    fn log_gain(&self, hz: f64, values: &[f64]) -> f64 {
+        self.law.log_gain(hz, values)
     }
 
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {

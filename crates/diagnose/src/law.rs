@@ -154,6 +154,16 @@ pub trait Law {
         Unpredicted::default()
     }
 
+    /// The joint whose drive follows what was measured, of a law of that.
+    fn follows(&self) -> Option<JointIndex> {
+        None
+    }
+
+    /// The log of what such a drive makes of noise of a frequency \[Hz\].
+    fn log_gain(&self, _hz: f64, _values: &[f64]) -> f64 {
+        0.0
+    }
+
     /// What the model says of its parameters; nothing of laws that the model does not have.
     fn beliefs(&self) -> &[Belief] {
         &[]

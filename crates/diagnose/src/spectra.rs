@@ -96,6 +96,11 @@ impl Spectra {
         spectra
     }
 
+    /// The frequencies of a channel's lines \[Hz\].
+    pub(super) fn frequencies(&self, channel: usize) -> impl Iterator<Item = f64> {
+        self.lines[channel].iter().map(|line| line.hz)
+    }
+
     /// The spectrum of what stretches have, if they have anything.
     fn of<'r>(&self, rows: &dyn Fn(usize, usize) -> Option<&'r [f64]>, up_to_hz: f64) -> Spectrum {
         let of_channel = |lines: &Vec<Line>| {

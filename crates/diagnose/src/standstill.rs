@@ -26,6 +26,8 @@ pub(super) struct Rest {
     directions: [f64; 2],
     /// On which side its friction is, from -1 to 1, at equal distances.
     sides: Vec<f64>,
+    /// What balances the other torques over what it slides with, at its samples, and that [N m, N].
+    needs: Vec<[f64; 2]>,
     /// From when on it is on the side of sliding \[s\].
     leaves_s: f64,
     /// How fast it would cover a step of its encoder meanwhile [rad/s, m/s].
@@ -48,8 +50,8 @@ impl Rest {
         let creep = step / (time_s.end - time_s.start);
         let beside = moves[0].or(moves[1]).unwrap_or(1.0);
         let directions = moves.map(|moved| moved.unwrap_or(beside).signum());
-        let (leaves_s, sides) = (time_s.start, directions.to_vec());
-        Self { time_s, directions, sides, leaves_s, creep }
+        let (leaves_s, sides, needs) = (time_s.start, directions.to_vec(), Vec::new());
+        Self { time_s, directions, sides, needs, leaves_s, creep }
     }
 
     /// What of it is within times \[s\]; none if that is nothing.
@@ -60,10 +62,11 @@ impl Rest {
         (self.time_s.start < self.time_s.end).then_some(self)
     }
 
-    /// Tells on which side friction is, over what it is while the drive slides, at equal distances
-    /// from when it begins to when it ends.
-    pub(super) fn settle(&mut self, sides: &[f64]) {
-        self.sides = sides.iter().map(|side| side.clamp(-1.0, 1.0)).collect();
+    /// Tells which friction is needed, over what the drive slides with, and that [N m, N], at equal
+    /// distances from when it begins to when it ends.
+    pub(super) fn settle(&mut self, needs: &[[f64; 2]]) {
+        self.needs = needs.to_vec();
+        self.sides = needs.iter().map(|[side, _]| side.clamp(-1.0, 1.0)).collect();
         let holds = |side: &f64| side * self.directions[1] < SLIDES;
         let held = self.sides.iter().rposition(holds).map_or(0, |last| last + 1);
         let share = held.min(self.sides.len() - 1) as f64 / self.sides.len() as f64;
@@ -172,6 +175,22 @@ impl Signals {
         &mut self.rests[joint.0]
     }
 
+    /// Takes from what a hypothesis adds to the torques of a joint, and from its derivatives, what
+    /// the friction of a drive that rests balances.
+    pub(super) fn unbalanced(&self, joint: JointIndex, torque: &mut [f64], by: &mut [&mut [f64]]) {
+        let beyond = |side: f64| side - side.clamp(-1.0, 1.0);
+        for rest in &self.rests[joint.0] {
+            for (k, [side, friction]) in rest.samples(&self.t).zip(&rest.needs) {
+                let left = side - torque[k] / friction;
+                if *friction > 0.0 {
+                    torque[k] = friction * (beyond(*side) - beyond(left));
+                    let is_held = left.abs() <= 1.0;
+                    by.iter_mut().filter(|_| is_held).for_each(|by| by[k] = 0.0);
+                }
+            }
+        }
+    }
+
     /// Rates of a joint's drive that creeps where it rests, for laws of sticking [rad/s, m/s].
     pub(super) fn creeping(&self, joint: JointIndex) -> Vec<f64> {
         let mut rates = self.of_drive(joint)[0].clone();
@@ -243,7 +262,9 @@ mod tests {
         let mut rates: Vec<f64> = t.iter().map(rate).collect();
         let seen = rates.clone();
         let (time_s, directions) = (2.0..8.0, [-1.0, 1.0]);
-        let rest = Rest { time_s, directions, sides: vec![0.0; 2], leaves_s: 8.0, creep: 1e-6 };
+        let sides = vec![0.0; 2];
+        let rest =
+            Rest { time_s, directions, sides, needs: Vec::new(), leaves_s: 8.0, creep: 1e-6 };
         alternate(&mut rates, &t, &[rest]);
         assert_eq!(rates[..995], seen[..995]);
         assert!(rates[995..1000].iter().all(|rate| *rate == -1e-6));
@@ -315,7 +336,7 @@ mod tests {
             for rest in &mut found {
                 // What is measured every 2 ms of a mass that does not move is its friction.
                 let samples = rest.samples(&t).skip(10).step_by(20);
-                rest.settle(&samples.map(|k| truth(t[k])).collect::<Vec<f64>>());
+                rest.settle(&samples.map(|k| [truth(t[k]), 1.0]).collect::<Vec<_>>());
             }
             let mut rates = vec![0.0; t.len()];
             alternate(&mut rates, &t, &found);

@@ -30,9 +30,9 @@ pub(super) fn settle(nominal: &Nominal<'_>, signals: &mut Signals, phi: &Phi) {
         let side = |(k, (back, forth)): (&usize, (&f64, &f64))| {
             let friction = 0.5 * (forth - back);
             let needed = measured[*k] - 0.5 * (forth + back);
-            if friction > 0.0 { needed / friction } else { 0.0 }
+            if friction > 0.0 { [needed / friction, friction] } else { [0.0; 2] }
         };
-        let sides: Vec<f64> = resting.iter().zip(back.iter().zip(&forth)).map(side).collect();
+        let sides: Vec<[f64; 2]> = resting.iter().zip(back.iter().zip(&forth)).map(side).collect();
         let mut first = 0;
         for (rest, range) in signals.rests_mut(joint).iter_mut().zip(ranges) {
             let last = first + range.len();

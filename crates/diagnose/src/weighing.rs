@@ -224,20 +224,28 @@ impl<'a> Weighing<'a> {
         }
     }
 
-    /// The samples of which an effect says nothing.
+    /// The samples of which an effect says nothing, and the noise that it makes smaller.
     fn unpredicted(&self, law: &dyn Law, values: &[f64]) -> Unpredicted {
         let (mut cut, mut squares, mut all) = (0.0, 0.0, 0.0);
         for (data, torques) in self.sets.iter().zip(&self.torques) {
             for (signals, torques) in data.signals.iter().zip(torques) {
                 let samples = signals.samples() as f64;
                 let motion = torques.motion(data.nominal, signals);
-                let Unpredicted { share, left } = law.unpredicted(motion, values);
+                let Unpredicted { share, left, .. } = law.unpredicted(motion, values);
                 cut += samples * share;
                 squares += samples * share * left;
                 all += samples;
             }
         }
-        Unpredicted { share: cut / f64::max(all, 1.0), left: squares / f64::max(cut, 1.0) }
+        let narrowed = law.follows().map_or(0.0, |joint| {
+            let gains = self.spectra.frequencies(joint.0).map(|hz| law.log_gain(hz, values));
+            -gains.sum::<f64>()
+        });
+        Unpredicted {
+            share: cut / f64::max(all, 1.0),
+            left: squares / f64::max(cut, 1.0),
+            narrowed,
+        }
     }
 
     /// What an effect does at the joint where that is most, as a share of its torque.

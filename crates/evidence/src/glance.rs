@@ -159,7 +159,7 @@ impl Glance {
     /// What terms do not earn, since they say nothing of some rows.
     fn unpredicted(&self, terms: &Terms, variances: &[f64]) -> f64 {
         if terms.unpredicted.share <= 0.0 {
-            return 0.0;
+            return terms.unpredicted.narrowed;
         }
         let of = |((channel, rows), variance): (&(usize, Range<usize>), &f64)| {
             let weight = self.weights[*channel][rows.start];

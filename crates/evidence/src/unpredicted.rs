@@ -28,6 +28,9 @@ pub struct Unpredicted {
     pub share: f64,
     /// The mean square of the data in these rows where what is beyond is taken away.
     pub left: f64,
+    /// The log of how much narrower the effect leaves the noise of what was measured: who makes
+    /// noise smaller does not predict data better.
+    pub narrowed: f64,
 }
 
 /// What terms do not earn where effects take away what data are, whatever that is. Cells are
@@ -39,9 +42,9 @@ pub(crate) fn unearned(terms: &[&Terms], cells: &[(usize, Range<usize>, f64)]) -
             let own: Vec<_> = own.map(|(_, rows, variance)| (rows.clone(), *variance)).collect();
             one.unpredicted.cost(known, &own)
         };
-        one.known.iter().enumerate().map(of_channel).sum()
+        one.unpredicted.narrowed + one.known.iter().enumerate().map(of_channel).sum::<f64>()
     };
-    terms.iter().filter(|one| one.unpredicted.share > 0.0).map(of).sum()
+    terms.iter().map(of).sum()
 }
 
 impl Unpredicted {

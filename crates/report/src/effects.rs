@@ -157,17 +157,17 @@ fn measured_formulas(
     if let Some(transmission) = measured.transmission {
         return transmission_formulas(dag, transmission, measured.channel, &logged, text);
     }
+    let given = if measured.is_inverse { format!(r"{letter}_{{\mathrm{{true}}}}") } else { logged };
     if measured.lag_s != dag.zero() {
         let lag = text(measured.lag_s);
         return vec![format!(
-            r"{lag}\, \frac{{\mathrm d}}{{\mathrm d t}} {logged} = {} - {logged}",
+            r"{lag}\, \frac{{\mathrm d}}{{\mathrm d t}} {given} = {} - {given}",
             text(measured.value)
         )];
     }
     if measured.delay_s != dag.zero() {
-        return vec![format!("{logged}(t) = {letter}(t - {})", text(measured.delay_s))];
+        return vec![format!("{given}(t) = {letter}(t - {})", text(measured.delay_s))];
     }
-    let given = if measured.is_inverse { format!(r"{letter}_{{\mathrm{{true}}}}") } else { logged };
     vec![format!("{given} = {}", text(measured.value))]
 }
 

@@ -16,6 +16,8 @@ pub(super) struct ChannelLaw {
     pub(super) channel: Channel,
     /// Whether the law gives the truth for what is logged.
     pub(super) is_inverse: bool,
+    /// Whether it acts on time alone.
+    is_timing: bool,
     /// Whether it is nothing but a delay.
     is_delay: bool,
     /// Delay, lag, then their derivatives by the parameters.
@@ -37,8 +39,8 @@ impl ChannelLaw {
         let timing = LawProgram::new(dag, &names(effect), Vec::new(), entries)?;
         let id = dag.find_symbol(measured.channel.as_str());
         let channel = dag.symbol_expr(id.expect("the channel is a symbol of its law"));
-        let is_timed = measured.value == channel && measured.lag_s == dag.zero();
-        let is_delay = is_timed && measured.transmission.is_none();
+        let is_timing = measured.value == channel && measured.transmission.is_none();
+        let is_delay = is_timing && measured.lag_s == dag.zero();
         let slope = gradient(dag, &[measured.value], &[channel]).concat();
         let columns = columns(dag, &slope);
         let inputs = inputs(dag, &columns, &[]);
@@ -46,7 +48,7 @@ impl ChannelLaw {
         let Measured { channel, is_inverse, transmission, .. } = *measured;
         let transmission = transmission.map(|one| TransmissionLaw::new(dag, effect, one));
         let transmission = transmission.transpose()?;
-        Ok(Self { channel, is_inverse, is_delay, timing, columns, slope, transmission })
+        Ok(Self { channel, is_inverse, is_timing, is_delay, timing, columns, slope, transmission })
     }
 }
 
@@ -78,35 +80,45 @@ impl EffectLaw {
     /// the truth: what its drive must do for that is not found.
     pub fn logged(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<f64> {
         let Some(law) = &self.channel else { return samples.tau.to_vec() };
-        let value = match law.is_inverse {
-            true => self.solved(law, samples, values, law.channel_of(samples)),
-            false => self.value(samples, values).swap_remove(0),
-        };
-        let [delay, lag] = self.timing(law, values);
-        lagged(samples.t, &shifted(samples.t, &value, delay), lag)
+        match law.is_inverse {
+            true => self.taken_back(law, samples, values),
+            false => self.given(law, samples, values),
+        }
     }
 
     /// The true channel where the samples are what is logged, the other columns being true. Of a
     /// joint behind a transmission it is what is logged: how far it is behind is not found here.
     pub fn corrected(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<f64> {
         let Some(law) = &self.channel else { return samples.tau.to_vec() };
+        if law.transmission.is_some() && law.is_inverse {
+            let logged = law.channel_of(samples);
+            let Some(through) = self.through(samples, values) else { return logged.to_vec() };
+            return logged.iter().zip(through.torque).map(|(logged, more)| logged - more).collect();
+        }
+        match law.is_inverse {
+            true => self.given(law, samples, values),
+            false => self.taken_back(law, samples, values),
+        }
+    }
+
+    /// What the law gives of the channel of the samples.
+    fn given(&self, law: &ChannelLaw, samples: &JointSamples<'_>, values: &[f64]) -> Vec<f64> {
+        let value = self.value(samples, values).swap_remove(0);
         let [delay, lag] = self.timing(law, values);
-        let logged = law.channel_of(samples);
+        lagged(samples.t, &shifted(samples.t, &value, delay), lag)
+    }
+
+    /// The channel of which the law gives that of the samples.
+    fn taken_back(&self, law: &ChannelLaw, samples: &JointSamples<'_>, values: &[f64]) -> Vec<f64> {
+        let [delay, lag] = self.timing(law, values);
+        let given = law.channel_of(samples);
         // before the lag: y + lag dy/dt; before the delay: ahead
-        let mut wanted = logged.to_vec();
+        let mut wanted = given.to_vec();
         if lag != 0.0 {
-            let rate = rate(samples.t, logged);
+            let rate = rate(samples.t, given);
             wanted.iter_mut().zip(rate).for_each(|(y, rate)| *y += lag * rate);
         }
-        let wanted = shifted(samples.t, &wanted, -delay);
-        if law.transmission.is_some() && law.is_inverse {
-            let Some(through) = self.through(samples, values) else { return wanted };
-            return wanted.iter().zip(through.torque).map(|(logged, more)| logged - more).collect();
-        }
-        if law.is_inverse {
-            return self.value(&law.with(samples, &wanted), values).swap_remove(0);
-        }
-        self.solved(law, samples, values, &wanted)
+        self.solved(law, samples, values, &shifted(samples.t, &wanted, -delay))
     }
 
     /// What the channel must be for the law to give what is wanted.
@@ -140,8 +152,8 @@ impl EffectLaw {
         truth
     }
 
-    /// The derivative of [`logged`](Self::logged) by each parameter.
-    pub(super) fn logged_gradient(
+    /// The derivative by each parameter of what the law gives of the channel of the samples.
+    pub(super) fn given_gradient(
         &self,
         samples: &JointSamples<'_>,
         values: &[f64],
@@ -181,6 +193,17 @@ impl EffectLaw {
     /// Whether the law is nothing but a delay of its channel.
     pub fn is_delay(&self) -> bool {
         self.channel.as_ref().is_some_and(|law| law.is_delay)
+    }
+
+    /// Whether the truth is what is logged, at another time: a drive that follows its command.
+    pub fn follows_log(&self) -> bool {
+        self.channel.as_ref().is_some_and(|law| law.is_inverse && law.is_timing)
+    }
+
+    /// The log of what a drive that follows its command makes of a frequency of it \[Hz\].
+    pub fn log_gain(&self, hz: f64, values: &[f64]) -> f64 {
+        let lag = self.channel.as_ref().map_or(0.0, |law| self.timing(law, values)[1]);
+        -0.5 * (std::f64::consts::TAU * hz * lag).powi(2).ln_1p()
     }
 
     fn timing(&self, law: &ChannelLaw, values: &[f64]) -> [f64; 2] {

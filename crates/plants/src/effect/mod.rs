@@ -223,7 +223,7 @@ impl EffectLaw {
     pub fn follows_accelerations(&self) -> bool {
         let answers = ["qdd", "qdd_2", "tau_load_rate", "tau_load_rate_2"];
         let uses = self.columns.iter().any(|&column| answers.contains(&COLUMNS[column]));
-        uses || self.channel.is_some() && !self.is_inverse()
+        uses || self.channel.is_some() && (!self.is_inverse() || self.follows_log())
     }
 
     /// Whether the law is of motion alone, and of no torque.
@@ -259,11 +259,11 @@ impl EffectLaw {
                 self.through(samples, values).map_or_else(nothing, gradient)
             }
             Some(Channel::Torque) if self.is_inverse() => {
-                let mut columns = self.value(samples, values).split_off(1);
+                let mut columns = self.given_gradient(samples, values);
                 columns.iter_mut().flatten().for_each(|entry| *entry = -*entry);
                 columns
             }
-            Some(Channel::Torque) => self.logged_gradient(samples, values),
+            Some(Channel::Torque) => self.given_gradient(samples, values),
             Some(_) => vec![vec![0.0; samples.len()]; self.parameters.len()],
         }
     }

@@ -122,6 +122,7 @@ impl<'a> ExactAliases<'a> {
         let added = AddedEffect {
             effect: effect.name.clone(),
             at: self.place(one.at)?,
+            side: None,
             parameters: Vec::new(),
             place: 0,
         };

@@ -10,7 +10,7 @@ use crate::model::json;
 use crate::model::{
     About, AddedEffect, AddedValue, Body, Cause, EffectPlace, Joint, JointKind, JointLaw,
     JointVariables, LawState, Limits, Link, LinkId, ModelError, Parameter, Report, Robot, Role,
-    SpringLaw, Terms, Tree, read, read_estimated,
+    SpringLaw, SpringSide, Terms, Tree, read, read_estimated,
 };
 use crate::number::Rational;
 
@@ -65,7 +65,9 @@ fn with_effects(
 pub fn attach(robot: &mut Robot, effect: &Effect, place: usize) -> Result<(), Vec<Cause>> {
     let added = robot.effects[place].clone();
     let links = links(robot, effect, &added).map_err(|cause| vec![cause])?;
-    let is_same = |other: &AddedEffect| other.effect == added.effect && other.at == added.at;
+    let effect = &*effect.on_side(added.side);
+    let own = |of: &AddedEffect| (of.effect.clone(), of.at, of.side);
+    let is_same = |other: &AddedEffect| own(other) == own(&added);
     if robot.effects[..place].iter().any(is_same) {
         return Err(vec![Cause::AddedTwice(added.effect)]);
     }
@@ -76,6 +78,10 @@ pub fn attach(robot: &mut Robot, effect: &Effect, place: usize) -> Result<(), Ve
     let suffix = match links.first() {
         Some(&link) => format!("_{}_{}", effect.name, robot.links[link].name),
         None => format!("_{}", effect.name),
+    };
+    let suffix = match added.side {
+        Some(SpringSide::Link) => format!("{suffix}_link"),
+        Some(SpringSide::Motor) | None => suffix,
     };
     if let Some(taken) = taken_name(robot, effect, &links, &suffix) {
         return Err(vec![Cause::DuplicateName(taken, "another quantity")]);
@@ -107,6 +113,17 @@ fn taken_name(robot: &Robot, effect: &Effect, links: &[LinkId], suffix: &str) ->
 fn links(robot: &Robot, effect: &Effect, added: &AddedEffect) -> Result<Vec<LinkId>, Cause> {
     let moves = |link: LinkId| robot.links[link].joint.variables.is_some();
     let wrong = |place| Err(Cause::WrongPlace(effect.name.clone(), place));
+    if added.side.is_some() {
+        let has_side = effect.at == EffectSite::Joint && matches!(effect.law, Law::Torque(_));
+        if !has_side {
+            return wrong("a place without a side, which laws of a joint's torque have");
+        }
+        let EffectPlace::Link(link) = added.at else { return wrong("a joint that moves") };
+        if robot.links[link].drive.and_then(|drive| drive.series_elastic).is_none() {
+            let what = "the joint has no series spring, and so no sides of one";
+            return Err(Cause::NothingToChange(effect.name.clone(), what));
+        }
+    }
     match (effect.at, added.at) {
         (EffectSite::Joint, EffectPlace::Link(link)) if moves(link) => Ok(vec![link]),
         (EffectSite::Joint, _) => wrong("a joint that moves"),

@@ -25,8 +25,9 @@ pub use spelling::JointUnit;
 
 pub use crate::model::SpringSide;
 
-use crate::expr::{Dag, ExprId};
+use crate::expr::{Dag, ExprId, free_symbols};
 use crate::number::Rational;
+use std::borrow::Cow;
 
 /// The tag of a file of an effect.
 pub const FORMAT: &str = "denavit-effect/1";
@@ -378,6 +379,28 @@ impl Effect {
     /// The parameter of that name.
     pub fn parameter(&self, name: &str) -> Option<&EffectParameter> {
         self.parameters.iter().find(|parameter| parameter.name == name)
+    }
+
+    /// The effect on a side of series springs, if that is said.
+    pub fn on_side(&self, side: Option<SpringSide>) -> Cow<'_, Self> {
+        match side.filter(|side| *side != self.side) {
+            Some(side) => Cow::Owned(Self { side, ..self.clone() }),
+            None => Cow::Borrowed(self),
+        }
+    }
+
+    /// Whether it brakes a motor by its motion alone, and so may brake a link behind a series
+    /// spring as well: friction of bearings and seals, not that of loaded gears.
+    pub fn is_of_any_bearing(&self) -> bool {
+        let Law::Torque(torque) = self.law else { return false };
+        let mut exprs = vec![torque];
+        exprs.extend(self.states.iter().map(|state| state.rate));
+        let used = free_symbols(&self.dag, &exprs);
+        let uses = |name: &str| self.dag.find_symbol(name).is_some_and(|id| used.contains(&id));
+        let is_of_joint = self.at == EffectSite::Joint && self.side == SpringSide::Motor;
+        is_of_joint
+            && ["qd", "creep"].into_iter().any(uses)
+            && !["qdd", "tau_load", "tau_load_rate"].into_iter().any(uses)
     }
 
     /// The expression of a symbol of [`VARIABLES`] or of a parameter, if a law uses it.

@@ -5,11 +5,12 @@ use super::linear::{depends, linear};
 use super::spelling::JointUnit;
 use super::{
     Confusion, Effect, EffectKind, EffectParameter, EffectSite, EffectState, FORMAT, Law, Measured,
-    Occurrence, SpringSide, Transmission,
+    Occurrence, Transmission,
 };
 use crate::expr::{Dag, ExprId, SymbolClass, substitute};
 use crate::model::check::Scope;
 use crate::model::entry::{Name, Scalar};
+use crate::model::file::SPRING_SIDES;
 use crate::model::json::Value;
 use crate::model::reader::{Fields, Node, Word, read_document};
 use crate::model::spelling::{is_identifier, reserved_by};
@@ -63,12 +64,6 @@ const OCCURRENCES: Word<'_, Occurrence> = Word {
     values: &Occurrence::ALL,
 };
 
-const SIDES: Word<'_, SpringSide> = Word {
-    what: "side of a series spring",
-    known: &["motor", "link"],
-    values: &[SpringSide::Motor, SpringSide::Link],
-};
-
 /// Reads a file of an effect from its bytes. `file` is its name, for messages alone. Names of
 /// `confused_with` are checked where all effects are known.
 pub fn read(file: &str, source: &[u8]) -> Result<Effect, ModelError> {
@@ -92,7 +87,7 @@ fn read_root(root: Node<'_>, joint: JointKind, report: &mut Report) -> Option<Ef
     let kind = fields.required_word("kind", &KINDS, report);
     let at = fields.required_word("at", &SITES, report);
     let occurrence = fields.word("occurrence", &OCCURRENCES, report).unwrap_or_default();
-    let side = fields.word("side", &SIDES, report).unwrap_or_default();
+    let side = fields.word("side", &SPRING_SIDES, report).unwrap_or_default();
     let names = ["parameters", "states"].iter().filter_map(|key| fields.get(key));
     let names: BTreeSet<String> =
         names.flat_map(|node| node.0.entries()).map(|(name, _)| name.to_string()).collect();

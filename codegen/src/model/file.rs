@@ -13,7 +13,7 @@ use super::place_file::{
 };
 use super::reader::{Fields, Node, Word};
 use super::report::Report;
-use super::robot::{About, Base, Convention, JointKind, Side, Terms, TorqueSide};
+use super::robot::{About, Base, Convention, JointKind, Side, SpringSide, Terms, TorqueSide};
 
 /// A constant or an unknown.
 #[derive(Clone, Debug)]
@@ -111,6 +111,8 @@ pub(super) struct EffectFile<'a> {
     pub(super) place: usize,
     pub(super) effect: String,
     pub(super) at: PlaceFile<'a>,
+    /// Of the joint's series spring.
+    pub(super) side: Option<SpringSide>,
     /// Name, value, standard deviation.
     pub(super) parameters: Vec<(String, Scalar<'a>, Option<Scalar<'a>>)>,
 }
@@ -164,6 +166,13 @@ const ABOUT: Word<'_, About> = Word {
     known: &["com", "origin"],
     values: &[About::Com, About::Origin],
 };
+/// Sides of series springs.
+pub(crate) const SPRING_SIDES: Word<'_, SpringSide> = Word {
+    what: "side of a series spring",
+    known: &["motor", "link"],
+    values: &[SpringSide::Motor, SpringSide::Link],
+};
+
 const SIDES: Word<'_, Side> =
     Word { what: "side", known: &["above", "below"], values: &[Side::Above, Side::Below] };
 const TERMS: Word<'_, usize> = Word {
@@ -413,14 +422,15 @@ fn value_with_std<'a>(
 
 fn read_effect<'a>(node: Node<'a>, report: &mut Report) -> Option<EffectFile<'a>> {
     let fields = node.fields(&["effect", "at", "parameters"], report)?;
-    let place = node.at();
+    let (place, mut side) = (node.at(), None);
     let at = fields.require("at", report).map_or(PlaceFile::Model, |node| {
         if node.is_text() {
             let _ = node.word(&MODEL, report);
             return PlaceFile::Model;
         }
-        let place = node.fields(&["link", "second", "contact"], report);
+        let place = node.fields(&["link", "second", "contact", "side"], report);
         let Some(place) = place else { return PlaceFile::Model };
+        side = place.word("side", &SPRING_SIDES, report);
         if place.get("link").is_some() && place.get("contact").is_some() {
             report.push(node.at(), Cause::TwoPlaces);
         }
@@ -439,6 +449,7 @@ fn read_effect<'a>(node: Node<'a>, report: &mut Report) -> Option<EffectFile<'a>
         place,
         effect: fields.required_name("effect", report).text.into_owned(),
         at,
+        side,
         parameters: fields.members("parameters", report, |key, node, report| {
             let (value, std) = value_with_std(node, report)?;
             Some((key.to_owned(), value, std))

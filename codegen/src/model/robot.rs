@@ -303,6 +303,8 @@ pub struct AddedEffect {
     pub effect: String,
     /// Where it acts.
     pub at: EffectPlace,
+    /// On which side of the joint's series spring, if the file says that.
+    pub side: Option<SpringSide>,
     /// Its parameters.
     pub parameters: Vec<AddedValue>,
     /// Where the file says so: byte offset.

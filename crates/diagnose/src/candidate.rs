@@ -20,6 +20,9 @@ pub struct Candidate {
     pub at: String,
     /// The joint that it acts on; none for what acts on the whole robot.
     pub joint: Option<JointIndex>,
+    /// Whether that is on the link's side of its series spring, where others of the name are on
+    /// the motor's.
+    pub is_behind_spring: bool,
     /// Whether it adds to the inertial parameters of a body, as the model's numbers may be off.
     pub is_body: bool,
     /// How often such an effect is met before any log is looked at.
@@ -29,9 +32,15 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// How it is written: `stribeck at knee`.
+    /// How it is written: `stribeck at knee`, `stribeck at knee behind its spring`.
     pub fn name(&self) -> String {
-        format!("{} at {}", self.effect, self.at)
+        format!("{} at {}", self.effect, self.at_in_words())
+    }
+
+    /// Its place in words.
+    pub fn at_in_words(&self) -> String {
+        let behind = if self.is_behind_spring { " behind its spring" } else { "" };
+        format!("{}{behind}", self.at)
     }
 
     /// Whether every drive has it.
@@ -55,6 +64,7 @@ impl Candidate {
         match (known.map(|effect| effect.at), self.at.split_once(" with ")) {
             (Some(EffectSite::Model), _) => NewPlace::Model,
             (_, Some((joint, second))) => NewPlace::Pair(joint, second),
+            _ if self.is_behind_spring => NewPlace::BehindSpring(&self.at),
             _ => NewPlace::Link(&self.at),
         }
     }

@@ -4,7 +4,7 @@ use super::candidate::Candidate;
 use super::elastic::Spring;
 use super::joint_law::{JointLaw, RobotLaw};
 use denavit_codegen::effect::{
-    Channel, Effect, EffectSite, Law as EffectKindLaw, ModelTerm, with_term,
+    Channel, Effect, EffectSite, Law as EffectKindLaw, ModelTerm, SpringSide, with_term,
 };
 use denavit_codegen::model::{EffectPlace, JointKind, Robot};
 use denavit_measure::JointIndex;
@@ -47,17 +47,24 @@ pub fn candidates(effects: &[Effect], robot: &Robot, model: &RegressionModel) ->
     all
 }
 
-/// Every effect on a series spring in every spring whose balance is measured.
+/// Every effect on a series spring in every spring whose balance is measured, and all friction of
+/// bearings on the link's side of those: the balance tells on which side it is.
 pub fn spring_candidates(
     effects: &[Effect],
     springs: &[Spring],
     model: &RegressionModel,
 ) -> Vec<Candidate> {
-    let of_effect = |effect| springs.iter().map(move |spring| (effect, spring.joint));
-    let effects = effects.iter().filter(|effect| effect.at == EffectSite::Spring);
-    let all = effects.flat_map(of_effect);
-    all.filter_map(|(effect, joint)| on_joint(effect, &model.joints[joint.0], joint, None))
-        .collect()
+    let of = |effect: &Effect, joint: JointIndex| {
+        let is_behind_spring = effect.is_of_any_bearing();
+        if effect.at != EffectSite::Spring && !is_behind_spring {
+            return None;
+        }
+        let effect = effect.on_side(is_behind_spring.then_some(SpringSide::Link));
+        let found = on_joint(&effect, &model.joints[joint.0], joint, None)?;
+        Some(Candidate { is_behind_spring, ..found })
+    };
+    let all = effects.iter().flat_map(|effect| springs.iter().map(move |one| (effect, one.joint)));
+    all.filter_map(|(effect, joint)| of(effect, joint)).collect()
 }
 
 /// An effect that changes the model: on each moving link, or on the whole.
@@ -90,6 +97,7 @@ fn on_robot(effect: &Effect, robot: &Robot, model: &RegressionModel) -> Vec<Cand
             title: effect.title.clone(),
             at: name,
             joint,
+            is_behind_spring: false,
             is_body: effect.at == EffectSite::Link && matches!(effect.law, EffectKindLaw::Moves(_)),
             occurrence: effect.occurrence,
             law: Box::new(RobotLaw { effect: law, is_of_drives }),
@@ -120,6 +128,7 @@ fn on_joint(
         title: effect.title.clone(),
         at,
         joint: Some(joint),
+        is_behind_spring: false,
         is_body: false,
         occurrence: effect.occurrence,
         law,

@@ -206,7 +206,9 @@ pub(super) fn tell_aliases(
         let own = named(one.candidate);
         one.exact = aliases.of_parameters(own);
         for other in &mut one.alternatives {
-            other.is_exact = aliases.are_alike(own, named(other.candidate));
+            let is_behind = |one: usize| candidates[one].is_behind_spring;
+            other.is_exact = is_behind(one.candidate) == is_behind(other.candidate)
+                && aliases.are_alike(own, named(other.candidate));
         }
     }
 }

@@ -5,7 +5,7 @@ use super::candidate::Candidate;
 use super::joint_law::JointLaw;
 use super::state::{MOST_Z, Taken};
 use crate::policy::nominal::JOINT;
-use denavit_codegen::effect::{Channel, Occurrence};
+use denavit_codegen::effect::{Channel, Occurrence, SpringSide};
 use denavit_measure::JointIndex;
 use denavit_plants::effect::AddedLaw;
 
@@ -24,13 +24,13 @@ pub struct Belief {
 pub fn given_candidates(laws: Vec<AddedLaw>) -> (Vec<Candidate>, Vec<Taken>) {
     let laws = laws.into_iter().filter(|one| one.law.channel() != Some(Channel::Rate));
     let of = |(candidate, one): (usize, AddedLaw)| {
-        let AddedLaw { title, at, joint, second, law, values, deviations, .. } = one;
+        let AddedLaw { title, at, joint, second, law, values, deviations, side, .. } = one;
         let belief = |(&value, std): (&f64, &Option<f64>)| Belief {
             value,
             std: std.unwrap_or(JOINT * value.abs()),
         };
         let beliefs: Vec<Belief> = values.iter().zip(&deviations).map(belief).collect();
-        let effect = law.name.clone();
+        let (effect, is_behind_spring) = (law.name.clone(), side == Some(SpringSide::Link));
         let mut law = JointLaw::new(law, JointIndex(joint), second.map(JointIndex));
         for (parameter, Belief { value, std }) in law.law.parameters.iter_mut().zip(&beliefs) {
             let [low, high] = parameter.bounds;
@@ -41,7 +41,16 @@ pub fn given_candidates(laws: Vec<AddedLaw>) -> (Vec<Candidate>, Vec<Taken>) {
         let law = Box::new(law);
         let (joint, occurrence) = (Some(JointIndex(joint)), Occurrence::default());
         (
-            Candidate { effect, title, at, joint, is_body: false, occurrence, law },
+            Candidate {
+                effect,
+                title,
+                at,
+                joint,
+                is_behind_spring,
+                is_body: false,
+                occurrence,
+                law,
+            },
             Taken { candidate, values },
         )
     };

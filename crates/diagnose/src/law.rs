@@ -159,9 +159,9 @@ pub trait Law {
         None
     }
 
-    /// The log of what such a drive makes of noise of a frequency \[Hz\].
-    fn log_gain(&self, _hz: f64, _values: &[f64]) -> f64 {
-        0.0
+    /// What such a drive leaves of the variance of a frequency \[Hz\].
+    fn gain(&self, _hz: f64, _values: &[f64]) -> f64 {
+        1.0
     }
 
     /// What the model says of its parameters; nothing of laws that the model does not have.

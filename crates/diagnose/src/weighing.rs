@@ -5,6 +5,7 @@ use super::data::{Data, ModelTorques, RowResponse};
 use super::hypothesis::Part;
 use super::law::{Law, Motion};
 use super::nominal::Nominal;
+use super::signals::Signals;
 use super::spectra::Spectra;
 use super::state::{Effects, Taken};
 use denavit_evidence::{Base, Glance, Spectrum, Terms, Unpredicted, policy};
@@ -47,7 +48,7 @@ impl<'a> Weighing<'a> {
         let cutoff_hz = sets[0].signals.first().map_or(0.0, |signals| signals.torque_hz);
         let spectra = Spectra::new(&sets, cutoff_hz);
         let logs = sets.iter().flat_map(|data| &data.signals);
-        let driven_hz = logs.map(super::signals::Signals::driven_hz).fold(0.0, f64::max);
+        let driven_hz = logs.map(Signals::driven_hz).fold(0.0, f64::max);
         let torques = sets.iter().map(|data| data.model_torques(z)).collect();
         let left: Vec<Vec<f64>> = sets.iter().map(|data| data.residual_of(z)).collect();
         let rows: Vec<&[f64]> = left.iter().map(Vec::as_slice).collect();
@@ -237,15 +238,25 @@ impl<'a> Weighing<'a> {
                 all += samples;
             }
         }
-        let narrowed = law.follows().map_or(0.0, |joint| {
-            let gains = self.spectra.frequencies(joint.0).map(|hz| law.log_gain(hz, values));
-            -gains.sum::<f64>()
+        let narrowed = law.follows().map(|joint| {
+            let noise = self.torque_noise(joint);
+            let lost = |hz| noise * (1.0 - law.gain(hz, values));
+            (joint.0, self.spectra.frequencies(joint.0).map(lost).collect())
         });
         Unpredicted {
             share: cut / f64::max(all, 1.0),
             left: squares / f64::max(cut, 1.0),
             narrowed,
         }
+    }
+
+    /// The variance of white noise of a measured torque in its lines.
+    fn torque_noise(&self, joint: JointIndex) -> f64 {
+        let of_log = |signals: &Signals| {
+            signals.torque_noise[joint.0].powi(2) * signals.log_step_s / signals.row_step_s()
+        };
+        let all: Vec<f64> = self.sets.iter().flat_map(|data| &data.signals).map(of_log).collect();
+        all.iter().sum::<f64>() / all.len().max(1) as f64
     }
 
     /// What an effect does at the joint where that is most, as a share of its torque.

@@ -158,8 +158,8 @@ impl Glance {
 
     /// What terms do not earn, since they say nothing of some rows.
     fn unpredicted(&self, terms: &Terms, variances: &[f64]) -> f64 {
-        if terms.unpredicted.share <= 0.0 {
-            return terms.unpredicted.narrowed;
+        if terms.unpredicted.share <= 0.0 && terms.unpredicted.narrowed.is_none() {
+            return 0.0;
         }
         let of = |((channel, rows), variance): (&(usize, Range<usize>), &f64)| {
             let weight = self.weights[*channel][rows.start];

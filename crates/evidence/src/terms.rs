@@ -51,7 +51,7 @@ impl Terms {
     /// The terms without the columns that are curved.
     pub(crate) fn linear(&self) -> Self {
         let places = (0..self.len()).filter(|&k| !self.is_curved[k]);
-        let (known, unpredicted) = (self.known.clone(), self.unpredicted);
+        let (known, unpredicted) = (self.known.clone(), self.unpredicted.clone());
         let mut linear = Self { known, unpredicted, ..Self::default() };
         for k in places {
             linear.columns.push(self.columns[k].clone());

@@ -84,6 +84,8 @@ pub enum NewPlace<'a> {
     Model,
     /// On a link, or on the joint that has its name.
     Link(&'a str),
+    /// On the link's side of the series spring of a joint.
+    BehindSpring(&'a str),
     /// On a joint, with a second one.
     Pair(&'a str, &'a str),
 }
@@ -163,6 +165,9 @@ fn effect_text(new: &NewEffect<'_>) -> String {
     let at = match new.at {
         NewPlace::Model => quoted("model"),
         NewPlace::Link(link) => format!("{{\"link\": {}}}", quoted(link)),
+        NewPlace::BehindSpring(link) => {
+            format!("{{\"link\": {}, \"side\": \"link\"}}", quoted(link))
+        }
         NewPlace::Pair(link, second) => {
             format!("{{\"link\": {}, \"second\": {}}}", quoted(link), quoted(second))
         }

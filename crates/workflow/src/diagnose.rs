@@ -280,8 +280,8 @@ fn searched_again(
 
 /// What the model has, then everything else that may be missing.
 fn with_given(mut given: Vec<Candidate>, mut searched: Vec<Candidate>) -> Vec<Candidate> {
-    let is =
-        |one: &Candidate, other: &Candidate| (&one.effect, &one.at) == (&other.effect, &other.at);
+    let place = |one: &Candidate| (one.effect.clone(), one.at.clone(), one.is_behind_spring);
+    let is = |one: &Candidate, other: &Candidate| place(one) == place(other);
     searched.retain(|one| given.iter().all(|given| !is(given, one)));
     given.append(&mut searched);
     given

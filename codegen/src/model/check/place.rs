@@ -105,8 +105,8 @@ impl Check<'_> {
                 parameters.extend(value.map(|value| AddedValue { name, value, std }));
             }
             if let Some(at) = self.effect_place(&effect.at, &contacts) {
-                let place = effect.place;
-                effects.push(AddedEffect { effect: effect.effect.clone(), at, parameters, place });
+                let (name, place, side) = (effect.effect.clone(), effect.place, effect.side);
+                effects.push(AddedEffect { effect: name, at, side, parameters, place });
             }
         }
         effects

@@ -60,22 +60,27 @@ fn angle(t: f64, waves: &[[f64; 3]]) -> Angle {
 #[derive(Clone, Copy)]
 struct Hidden {
     drag: f64,
+    /// What brakes the link in the same way.
+    link_drag: f64,
     across: f64,
     damping: f64,
     /// What the motor reads where spring and joint are at 0, on the joint's side \[rad\].
     zero: f64,
 }
 
-const NOTHING: Hidden = Hidden { drag: 0.0, across: 0.0, damping: 0.0, zero: 0.0 };
+const NOTHING: Hidden = Hidden { drag: 0.0, link_drag: 0.0, across: 0.0, damping: 0.0, zero: 0.0 };
 
 /// Torque of the load and its first two derivatives by time.
-fn load([q, v, a, jerk, snap]: Angle, across: f64) -> [f64; 3] {
+fn load([q, v, a, jerk, snap]: Angle, Hidden { across, link_drag, .. }: Hidden) -> [f64; 3] {
     // WEIGHT cos q, since the rod points along x at 0.
     let (sine, cosine) = q.sin_cos();
+    let [speed, growth] = [v.abs(), a * v.signum()];
     [
-        INERTIA * a + WEIGHT * cosine + across * q,
-        INERTIA * jerk - WEIGHT * sine * v + across * v,
-        INERTIA * snap - WEIGHT * (cosine * v * v + sine * a) + across * a,
+        INERTIA * a + WEIGHT * cosine + across * q + link_drag * v * speed,
+        INERTIA * jerk - WEIGHT * sine * v + across * v + 2.0 * link_drag * speed * a,
+        INERTIA * snap - WEIGHT * (cosine * v * v + sine * a)
+            + across * a
+            + 2.0 * link_drag * (growth * a + speed * jerk),
     ]
 }
 
@@ -108,17 +113,18 @@ fn deflections(damping: f64, load: impl Fn(f64) -> [f64; 3]) -> Vec<[f64; 3]> {
 }
 
 /// A log of the motor before the spring.
-fn log(seed: u64, Hidden { drag, across, damping, zero }: Hidden) -> MeasuredLog {
+fn log(seed: u64, hidden: Hidden) -> MeasuredLog {
+    let Hidden { drag, damping, zero, .. } = hidden;
     let mut random = Random::new(seed);
     let waves: Vec<[f64; 3]> = (1..=4)
         .map(|k| [0.5 / f64::from(k), TAU * f64::from(k) / 4.0, TAU * random.uniform()])
         .collect();
     let mut own = JointSignals::default();
     let (mut motor, mut torque) = (Vec::new(), Vec::new());
-    let load_at = |t: f64| load(angle(t, &waves), across);
+    let load_at = |t: f64| load(angle(t, &waves), hidden);
     for (k, [ahead, first, second]) in deflections(damping, load_at).into_iter().enumerate() {
         let at = angle(STEP_S * k as f64, &waves);
-        let [spring, ..] = load(at, across);
+        let [spring, ..] = load(at, hidden);
         // Joint side: what the spring passes on bends it.
         let [turned, rate, acceleration] = [at[0] + ahead, at[1] + first, at[2] + second];
         let drive = GEAR * GEAR * (ROTOR * acceleration + VISCOUS * rate)
@@ -227,6 +233,18 @@ fn a_motor_behind_a_spring_lacks_nothing() {
 #[test]
 fn what_brakes_a_motor_behind_a_spring_is_named() {
     is_found(Hidden { drag: 0.15, ..NOTHING }, "quadratic_drag at rod", 0.15);
+}
+
+/// The same law on the other side is in both balances.
+#[test]
+fn what_brakes_a_link_behind_a_spring_is_named_there() {
+    let hidden = Hidden { link_drag: 0.15, ..NOTHING };
+    is_found(hidden, "quadratic_drag at rod behind its spring", 0.15);
+    // A model with it, whose file says the side, moves as the link does.
+    let (found, _) = diagnosed(hidden).expect("logs that say something");
+    for [before, after] in apart(&found) {
+        assert!(after < 0.3 * before, "{before} {after}");
+    }
 }
 
 /// The balance of the motor has nothing of it.

@@ -4,6 +4,7 @@ mod cancelling;
 mod columns;
 mod course;
 mod elastic;
+mod late_drive;
 mod laws;
 mod motion;
 mod one_joint;

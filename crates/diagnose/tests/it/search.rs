@@ -98,6 +98,7 @@ fn candidates(model: &RegressionModel) -> Vec<Candidate> {
                 title: name.to_owned(),
                 at: described.name.clone(),
                 joint: Some(JointIndex(joint)),
+                is_behind_spring: false,
                 is_body: false,
                 occurrence: match name {
                     "viscous" | "coulomb" | "offset" | "rotor_inertia" => Occurrence::Standard,

@@ -217,6 +217,26 @@ fn what_takes_nearly_all_away_must_predict_the_rest() {
     }
 }
 
+/// A lag of what was measured leaves less of its noise, and predicts nothing by that.
+#[test]
+fn what_makes_noise_smaller_predicts_nothing() {
+    let mut random = Random::new(12);
+    let data = vec![(0..400).map(|_| random.normal()).collect::<Vec<f64>>()];
+    let layout = Layout { bands: vec![vec![0..400]], levels: vec![0.02] };
+    let base = Base::new(layout, data.clone(), &[]);
+    let evidence = |terms: &[&Terms]| base.weigh(terms, None, 40).log_evidence;
+    for gain in [0.99, 0.8, 0.5_f64] {
+        let known = vec![data[0].iter().map(|row| (1.0 - gain) * row).collect()];
+        // by the mean square that the data have
+        let square = data[0].iter().map(|row| row * row).sum::<f64>() / 400.0;
+        let lost = vec![square * (1.0 - gain * gain); 400];
+        let unpredicted = Unpredicted { narrowed: Some((0, lost)), ..Unpredicted::default() };
+        let gained = evidence(&[&Terms { known, unpredicted, ..Terms::default() }]) - evidence(&[]);
+        // but for what is believed of the size of noise
+        assert!(gained.abs() < -0.02 * 400.0 * gain.ln(), "{gain}: {gained}");
+    }
+}
+
 /// A channel without torque has the least level there is.
 #[test]
 fn a_channel_without_torque_is_weighed() {

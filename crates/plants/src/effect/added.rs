@@ -3,7 +3,7 @@
 
 use super::{EffectLaw, LawParameter};
 use crate::error::{Cause, Error};
-use denavit_codegen::effect::{Effect, Law, find, place_name};
+use denavit_codegen::effect::{Effect, Law, SpringSide, find, place_name};
 use denavit_codegen::model::{AddedEffect, EffectPlace, LinkId, Robot};
 use denavit_codegen::program::constant_values;
 
@@ -16,6 +16,8 @@ pub struct AddedLaw {
     pub title: String,
     /// Its place: the joint, or `joint with joint`.
     pub at: String,
+    /// On which side of the joint's series spring, if the model says that.
+    pub side: Option<SpringSide>,
     /// The row of its joint.
     pub joint: usize,
     /// The row of the second joint of a pair.
@@ -90,8 +92,8 @@ fn law_of(
         }
     };
     let kind = robot.links[link].joint.kind;
-    let law =
-        EffectLaw::new(effect, kind).map_err(|error| Cause::Law(added.effect.clone(), error))?;
+    let law = EffectLaw::new(&effect.on_side(added.side), kind)
+        .map_err(|error| Cause::Law(added.effect.clone(), error))?;
     let (mut values, mut deviations) = (Vec::new(), Vec::new());
     for LawParameter { name, .. } in &law.parameters {
         let Some(given) = added.parameters.iter().find(|given| given.name == *name) else {
@@ -102,5 +104,6 @@ fn law_of(
         deviations.push(given.std.map(|std| constant_values(&robot.dag, &[std])[0]));
     }
     let (title, joint) = (effect.title.clone(), row(link));
-    Ok(AddedLaw { number, title, at, joint, second, law, values, deviations })
+    let side = added.side;
+    Ok(AddedLaw { number, title, at, side, joint, second, law, values, deviations })
 }

@@ -200,10 +200,10 @@ impl EffectLaw {
         self.channel.as_ref().is_some_and(|law| law.is_inverse && law.is_timing)
     }
 
-    /// The log of what a drive that follows its command makes of a frequency of it \[Hz\].
-    pub fn log_gain(&self, hz: f64, values: &[f64]) -> f64 {
+    /// What a channel that lags leaves of the variance of a frequency \[Hz\].
+    pub fn gain(&self, hz: f64, values: &[f64]) -> f64 {
         let lag = self.channel.as_ref().map_or(0.0, |law| self.timing(law, values)[1]);
-        -0.5 * (std::f64::consts::TAU * hz * lag).powi(2).ln_1p()
+        1.0 / (1.0 + (std::f64::consts::TAU * hz * lag).powi(2))
     }
 
     fn timing(&self, law: &ChannelLaw, values: &[f64]) -> [f64; 2] {

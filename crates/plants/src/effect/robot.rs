@@ -71,6 +71,7 @@ impl RobotEffect {
                 let added = AddedEffect {
                     effect: effect.name.clone(),
                     at,
+                    side: None,
                     parameters: Vec::new(),
                     place: 0,
                 };

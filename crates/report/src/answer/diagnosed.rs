@@ -128,7 +128,7 @@ fn effect(out: &mut String, shown: &Diagnosed, one: &FoundEffect) -> fmt::Result
         "\n{doubt}{} ({}) at {}: odds {}, {} of the torque, {}",
         own.title,
         own.effect,
-        own.at,
+        own.at_in_words(),
         odds(one.log_odds),
         percent(one.size),
         closes(one)

@@ -57,6 +57,9 @@ struct WhereJson<'a> {
 struct EffectJson<'a> {
     effect: &'a str,
     at: &'a str,
+    /// Of the joint's series spring, where it is not that of the motor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    side: Option<&'static str>,
     /// The log of the odds that it is there.
     log_odds: f64,
     log_predicted: f64,
@@ -93,6 +96,9 @@ struct ValueJson<'a> {
 struct OtherJson<'a> {
     effect: &'a str,
     at: &'a str,
+    /// Of the joint's series spring, where it is not that of the motor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    side: Option<&'static str>,
     /// The log of the odds of the effect that was found against it.
     log_odds: f64,
     /// Whether no motion tells the two apart.
@@ -104,6 +110,9 @@ struct OtherJson<'a> {
 struct VisibleJson<'a> {
     effect: &'a str,
     at: &'a str,
+    /// Of the joint's series spring, where it is not that of the motor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    side: Option<&'static str>,
     /// The least value of its parameter; none where no value would be seen.
     least: Option<f64>,
     unit: &'a str,
@@ -240,12 +249,14 @@ fn effect<'a>(
     let others = one.alternatives.iter().map(|other| OtherJson {
         effect: &candidates[other.candidate].effect,
         at: &candidates[other.candidate].at,
+        side: side(&candidates[other.candidate]),
         log_odds: other.log_odds,
         exact: other.is_exact,
     });
     EffectJson {
         effect: &own.effect,
         at: &own.at,
+        side: side(own),
         log_odds: one.log_odds,
         log_predicted: one.log_predicted,
         size: one.size,
@@ -257,13 +268,23 @@ fn effect<'a>(
     }
 }
 
+fn side(own: &Candidate) -> Option<&'static str> {
+    own.is_behind_spring.then_some("link")
+}
+
 /// How small effects would have been seen.
 fn visible(shown: &Diagnosed) -> Vec<VisibleJson<'_>> {
     let known = |value: f64| Some(value).filter(|value| value.is_finite());
     let of = |one: &Visible| {
-        let Candidate { effect, at, law, .. } = &shown.candidates[one.candidate];
-        let unit = &law.parameters()[0].unit;
-        VisibleJson { effect, at, least: known(one.least), unit, share: known(one.share) }
+        let own = &shown.candidates[one.candidate];
+        VisibleJson {
+            effect: &own.effect,
+            at: &own.at,
+            side: side(own),
+            least: known(one.least),
+            unit: &own.law.parameters()[0].unit,
+            share: known(one.share),
+        }
     };
     shown.found.visible.iter().map(of).collect()
 }

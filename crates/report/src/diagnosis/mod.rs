@@ -258,7 +258,7 @@ impl DiagnosisPage<'_> {
                      well: what speaks for it are its odds."
                 .to_owned(),
         };
-        let (title, at, odds) = (&own.title, &own.at, odds(one.log_odds));
+        let (title, at, odds) = (&own.title, own.at_in_words(), odds(one.log_odds));
         let text = format!("{doubt}: {title} at {at}. Its odds are {odds}. {closes}");
         let mut parts = vec![Part::Paragraph { text }];
         if let Some(effect) = self.effects.iter().find(|effect| effect.name == own.effect) {

@@ -26,8 +26,8 @@ impl DiagnosisPage<'_> {
                     "other logs: no motion was found"
                 };
                 let odds = Cell::number(other.log_odds, odds(other.log_odds));
-                let cells =
-                    vec![Cell::prose(&own.title), Cell::text(&own.at), odds, Cell::prose(told)];
+                let at = Cell::text(own.at_in_words());
+                let cells = vec![Cell::prose(&own.title), at, odds, Cell::prose(told)];
                 Row { cells, is_marked: other.is_exact }
             })
             .collect();
@@ -97,7 +97,7 @@ impl DiagnosisPage<'_> {
     ) -> (JointedRobot, Vec<SceneMark>) {
         let own = &self.candidates[one.candidate];
         let names: Vec<&str> = own.at.split(" with ").collect();
-        let word = format!("{} at {}", own.title, own.at);
+        let word = format!("{} at {}", own.title, own.at_in_words());
         (scene.clone().marking(&names, own.is_body), vec![SceneMark::marked(word)])
     }
 }

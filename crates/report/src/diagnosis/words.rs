@@ -145,7 +145,7 @@ fn looks_like(found: &Diagnosis) -> Option<String> {
 
 /// An effect of the catalogue, and where it is.
 pub(super) fn in_words(own: &Candidate) -> String {
-    format!("{} at {}", own.title, own.at)
+    format!("{} at {}", own.title, own.at_in_words())
 }
 
 /// How much of the gap an effect closes, in words; none where the other terms close as much

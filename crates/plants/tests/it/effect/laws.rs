@@ -239,3 +239,29 @@ fn a_drive_at_its_limit_gives_less_than_is_logged() {
     let logged = law.logged(&JointSamples { tau: &within, ..samples }, &[1.0 / limit]);
     assert!(logged.iter().zip(&within).all(|(a, b)| (a - b).abs() < 1e-12));
 }
+
+/// A first-order lag in closed form, of each wave of the demanded torque.
+#[test]
+fn a_drive_that_lags_follows_its_demand() {
+    let motion = motion(4000, 0.001);
+    let samples = motion.samples();
+    let law = laws().into_iter().find(|law| law.name == "drive_lag").expect("it is shipped");
+    assert!(law.follows_log() && law.is_inverse());
+    let lag = 0.03;
+    let wave = |size: f64, w: f64, phase: f64, t: f64| {
+        size / 1.0_f64.hypot(w * lag) * (w * t + phase - (w * lag).atan()).sin()
+    };
+    let half = std::f64::consts::FRAC_PI_2;
+    let exact = |t: f64| 1.0 + wave(4.0, 3.1, 0.2, t) + wave(0.5, 2.0, half, t);
+    let given = law.corrected(&samples, &[lag]);
+    let added = law.torque(&samples, &[lag]);
+    // the start is forgotten after some lags
+    for k in 400..4000 {
+        assert!((given[k] - exact(samples.t[k])).abs() < 1e-4, "{k}");
+        assert!((added[k] - (samples.tau[k] - given[k])).abs() < 1e-12);
+    }
+    let back = law.logged(&JointSamples { tau: &given, ..samples }, &[lag]);
+    assert!((400..3999).all(|k| (back[k] - samples.tau[k]).abs() < 1e-4));
+    let gain = law.gain(3.1 / std::f64::consts::TAU, &[lag]);
+    assert!((gain.sqrt() * 1.0_f64.hypot(3.1 * lag) - 1.0).abs() < 1e-12);
+}

@@ -47,16 +47,13 @@ pub(super) struct JointLaw {
     pub(super) beliefs: Vec<Belief>,
 }
 
-/// What of a response the friction of drives that rest does not balance.
+/// What of a change of a measured torque the friction of a drive that rests does not balance.
 fn unbalanced(motion: &Motion<'_>, mut response: Response) -> Response {
-    let joints = motion.signals.joints();
     for (place, equation) in response.equations.iter().enumerate() {
         let mut by: Vec<&mut [f64]> =
             response.gradient.iter_mut().map(|all| all[place].as_mut_slice()).collect();
-        if *equation < joints {
-            let torque = &mut response.torque[place];
-            motion.signals.unbalanced(JointIndex(*equation), torque, &mut by);
-        }
+        let torque = &mut response.torque[place];
+        motion.signals.unbalanced(JointIndex(*equation), torque, &mut by);
     }
     response
 }
@@ -216,8 +213,8 @@ impl JointLaw {
         };
         let found = found.unwrap_or_else(nothing);
         match self.acts {
-            Acts::Torque | Acts::Spring => found,
-            _ => unbalanced(motion, found),
+            Acts::Delay | Acts::Followed => unbalanced(motion, found),
+            _ => found,
         }
     }
 }

@@ -156,25 +156,23 @@ impl JointLaw {
     /// as that is beyond the clip, and what is left is then that of the model at the clip. Of what
     /// was demanded beyond a clip it says nothing.
     fn demanded(&self, motion: &Motion<'_>, values: &[f64]) -> Response {
-        let measured = self.measured(motion);
-        let samples = JointSamples { tau: &measured, ..samples(motion, self.joint, None) };
-        let (mut torque, mut gradient) = self.law.torque_and_gradient(&samples, values);
-        let lacks: Vec<f64> = torque.iter().copied().filter(|lack| *lack != 0.0).collect();
+        let mut response = self.followed(motion, values);
+        let lacks: Vec<f64> =
+            response.torque[0].iter().copied().filter(|lack| *lack != 0.0).collect();
         let noise = motion.signals.torque_noise[self.joint.0];
         if rms(&lacks) < OF_NOISE * noise {
-            torque.fill(0.0);
-            gradient.iter_mut().for_each(|column| column.fill(0.0));
+            let columns = response.torque.iter_mut().chain(response.gradient.iter_mut().flatten());
+            columns.for_each(|column| column.fill(0.0));
         }
-        Response::of(self.joint.0, torque, gradient)
+        response
     }
 
-    /// What was measured more than a drive gives that follows it. The derivatives are those of what
-    /// is computed: with the noise of what was measured in them, the lag that leaves least noise
-    /// would be found.
+    /// What was measured more than a drive gives that follows it.
     fn followed(&self, motion: &Motion<'_>, values: &[f64]) -> Response {
-        let (computed, measured) = (samples(motion, self.joint, None), self.measured(motion));
-        let torque = self.law.torque(&JointSamples { tau: &measured, ..computed }, values);
-        Response::of(self.joint.0, torque, self.law.gradient(&computed, values))
+        let measured = self.measured(motion);
+        let samples = JointSamples { tau: &measured, ..samples(motion, self.joint, None) };
+        let (torque, gradient) = self.law.torque_and_gradient(&samples, values);
+        Response::of(self.joint.0, torque, gradient)
     }
 
     fn measured(&self, motion: &Motion<'_>) -> Vec<f64> {

@@ -38,7 +38,7 @@ fn floor(
     disturbed: &[Vec<f64>],
 ) -> NoiseFloor {
     let gain = signals.noise_gain();
-    let laps = signals.laps();
+    let laps = signals.laps;
     let of = |equation: usize| {
         // No torque is measured of springs.
         let measured = signals.measured.get(equation);

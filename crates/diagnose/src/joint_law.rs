@@ -230,14 +230,8 @@ impl Law for JointLaw {
         match self.acts {
             Acts::Torque => self.law.follows_accelerations(),
             // A joint on a spring is behind in proportion to its load, and to the noise of that.
-            Acts::Play | Acts::Reading | Acts::Sprung => true,
-            // How a joint falls through its gap is integrated, and has no noise of accelerations.
-            Acts::Spring
-            | Acts::Demand
-            | Acts::Followed
-            | Acts::Delay
-            | Acts::Elastic
-            | Acts::Gap => false,
+            // How one falls through its gap is integrated; a torque that is moved was measured.
+            acts => matches!(acts, Acts::Play | Acts::Reading | Acts::Sprung),
         }
     }
 
@@ -263,12 +257,8 @@ impl Law for JointLaw {
         Unpredicted { share, left: rms(&given).powi(2), ..Unpredicted::default() }
     }
 
-    fn follows(&self) -> Option<JointIndex> {
-        (self.acts == Acts::Followed).then_some(self.joint)
-    }
-
-    fn gain(&self, hz: f64, values: &[f64]) -> f64 {
-        self.law.gain(hz, values)
+    fn following(&self) -> Option<(JointIndex, &EffectLaw)> {
+        (self.acts == Acts::Followed).then_some((self.joint, &self.law))
     }
 
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {

@@ -17,7 +17,7 @@ use denavit_numerics::derivative;
 pub(super) fn weights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
     let heights = heights(nominal, signals, phi);
     let samples = signals.samples() as f64 * signals.step_s / signals.log_step_s;
-    let laps = signals.laps().map_or(1.0, |laps| samples / laps.period);
+    let laps = signals.laps.map_or(1.0, |laps| samples / laps.period);
     let of_joint = |(joint, heights): (usize, &Vec<f64>)| {
         let level = policy::NOISE_LEVEL * nominal.usual[joint][0];
         let weight = |unknown: &f64| {

@@ -7,7 +7,7 @@ use super::rows::{PerJoint, of_axes, torques};
 use super::signals::Signals;
 use denavit_evidence::Unpredicted;
 use denavit_measure::JointIndex;
-use denavit_plants::effect::{Drive, LawParameter};
+use denavit_plants::effect::{Drive, EffectLaw, LawParameter};
 use std::cell::RefCell;
 use std::rc::Rc;
 
@@ -154,14 +154,9 @@ pub trait Law {
         Unpredicted::default()
     }
 
-    /// The joint whose drive follows what was measured, of a law of that.
-    fn follows(&self) -> Option<JointIndex> {
+    /// The joint and the law of a drive that follows what was measured.
+    fn following(&self) -> Option<(JointIndex, &EffectLaw)> {
         None
-    }
-
-    /// What such a drive leaves of the variance of a frequency \[Hz\].
-    fn gain(&self, _hz: f64, _values: &[f64]) -> f64 {
-        1.0
     }
 
     /// What the model says of its parameters; nothing of laws that the model does not have.

@@ -76,6 +76,8 @@ pub struct Signals {
     /// Where the rows are among the samples of the motion.
     rows: Rows,
     filter: Butterworth,
+    /// The laps of the motion, if it repeats.
+    pub(super) laps: Option<Laps>,
 }
 
 /// Where rows and cells are: a cell is the time of a sample of the log, a row one in so many.
@@ -159,6 +161,7 @@ impl Signals {
             torque_noise: Vec::new(),
             rows,
             filter,
+            laps: None,
         };
         let mut randoms = [Random::new(1), Random::new(2)];
         for joint in joints {
@@ -179,6 +182,8 @@ impl Signals {
             signals.motor_noise.push(noise(1, of_motor, motor_step));
             signals.push(joint, &wide, kept.clone());
         }
+        let q: Vec<Vec<f64>> = signals.q.iter().map(|q| signals.cell_means(q)).collect();
+        signals.laps = Laps::find(&q, step_s, 0..kept.len()).ok();
         Ok(signals)
     }
 
@@ -418,13 +423,6 @@ impl Signals {
 
     fn row_samples(&self, signal: &[f64]) -> Vec<f64> {
         signal[self.rows.range.clone()].iter().copied().step_by(self.rows.stride).collect()
-    }
-
-    /// The laps of the motion, if it repeats.
-    pub(super) fn laps(&self) -> Option<Laps> {
-        let q: Vec<Vec<f64>> = self.q.iter().map(|q| self.cell_means(q)).collect();
-        let end = q.first().map_or(0, Vec::len);
-        Laps::find(&q, self.log_step_s, 0..end).ok()
     }
 
     /// The share of the deviation of white noise that passes the filter.

@@ -238,7 +238,7 @@ impl<'a> Weighing<'a> {
                 all += samples;
             }
         }
-        let narrowed = law.follows().map(|joint| {
+        let narrowed = law.following().map(|(joint, law)| {
             let noise = self.torque_noise(joint);
             let lost = |hz| noise * (1.0 - law.gain(hz, values));
             (joint.0, self.spectra.frequencies(joint.0).map(lost).collect())

@@ -81,41 +81,20 @@ impl MeasuredLog {
     pub fn samples(&self) -> usize {
         self.joints.first().map_or(0, |joint| joint.q.len())
     }
-}
 
-impl MeasuredLog {
     /// The first samples alone.
     pub fn head(&self, samples: usize) -> Self {
-        let head = |values: &Vec<f64>| values[..values.len().min(samples)].to_vec();
-        let some = |values: &Option<Vec<f64>>| values.as_ref().map(head);
-        let joint = |own: &JointSignals| JointSignals {
-            q: head(&own.q),
-            qd: some(&own.qd),
-            qdd: some(&own.qdd),
-            tau: some(&own.tau),
-            reference: some(&own.reference),
-            motor: some(&own.motor),
-            motor_torque: some(&own.motor_torque),
-            step: own.step,
-            motor_step: own.motor_step,
-        };
-        let contacts = self.contacts.iter();
-        Self {
-            file: self.file.clone(),
-            header: self.header.clone(),
-            start_s: self.start_s,
-            step_s: self.step_s,
-            joints: self.joints.iter().map(joint).collect(),
-            contacts: contacts
-                .map(|(name, axes)| (name.clone(), axes.each_ref().map(head)))
-                .collect(),
-            wrenches: self
-                .wrenches
-                .iter()
-                .map(|(link, parts)| (link.clone(), parts.each_ref().map(head)))
-                .collect(),
-            remarks: self.remarks.clone(),
+        let mut head = self.clone();
+        for joint in &mut head.joints {
+            let JointSignals { q, qd, qdd, tau, reference, motor, motor_torque, .. } = joint;
+            q.truncate(samples);
+            let others = [qd, qdd, tau, reference, motor, motor_torque].into_iter().flatten();
+            others.for_each(|values| values.truncate(samples));
         }
+        let forces = head.contacts.iter_mut().flat_map(|(_, axes)| axes);
+        let wrenches = head.wrenches.iter_mut().flat_map(|(_, parts)| parts);
+        forces.chain(wrenches).for_each(|values| values.truncate(samples));
+        head
     }
 
     /// Sees to it that no joint behind a spring has the torque of its motor alone, which is not

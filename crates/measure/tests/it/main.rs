@@ -1,3 +1,5 @@
 //! Tests of reading and conditioning logs.
 
 mod laps;
+mod steps;
+mod stretches;

@@ -48,24 +48,29 @@ fn plant_of(file: &Value) -> LoadedPlant {
 }
 
 /// What acts beside the series spring: viscous friction and inertia of the drive, a damper beside
-/// the spring, a spring across the joint.
+/// the spring, a spring across the joint; viscous friction of the link.
 #[derive(Clone, Copy)]
 struct Added {
     viscous: f64,
+    of_link: f64,
     inertia: f64,
     damper: f64,
     across: f64,
 }
 
-const ADDED: Added = Added { viscous: 0.3, inertia: 0.04, damper: 0.08, across: 5.0 };
+const ADDED: Added =
+    Added { viscous: 0.3, of_link: 0.05, inertia: 0.04, damper: 0.08, across: 5.0 };
 
 impl Added {
     fn effects(self) -> Value {
         let at = json!({"link": "rod"});
         let one =
             |name: &str, values: Value| json!({"effect": name, "at": at, "parameters": values});
+        let mut of_link = one("viscous", json!({"fv": self.of_link}));
+        of_link["at"]["side"] = "link".into();
         let mut effects = vec![
             one("viscous", json!({"fv": self.viscous})),
+            of_link,
             one("damper", json!({"d": self.damper})),
             one("spring", json!({"k": self.across, "q_0": 0})),
         ];
@@ -77,7 +82,7 @@ impl Added {
 
     /// q and its rate, then those of the motor on the joint's side, after a time.
     fn after(self, t_s: f64, [q, motor]: [f64; 2]) -> Vec<f64> {
-        let Self { viscous, inertia, damper, across } = self;
+        let Self { viscous, of_link, inertia, damper, across } = self;
         let (link, drive) = (INERTIA, ROTOR + inertia);
         let rates = DMatrix::from_row_slice(
             4,
@@ -88,7 +93,7 @@ impl Added {
                 0.0,
                 0.0, //
                 -(STIFFNESS + across) / link,
-                -damper / link,
+                -(damper + of_link) / link,
                 STIFFNESS / link,
                 damper / link, //
                 0.0,
@@ -153,7 +158,7 @@ fn laws_of_a_motor_act_on_its_joint_where_the_drive_counts_as_stiff() {
             let how = accurate(drives, 0.7);
             let run = simulate(&mut plant, &Control::passive(1), &initial, &how).expect("begins");
             let whole = INERTIA + inertia;
-            let lines = [0.0, 1.0, -added.across / whole, -added.viscous / whole];
+            let lines = [0.0, 1.0, -added.across / whole, -(added.viscous + added.of_link) / whole];
             let rates = DMatrix::from_row_slice(2, 2, &lines);
             let expected = (rates * 0.7).exp() * DVector::from_column_slice(&[0.1, 0.0]);
             assert_near(run.end.q[0], expected[0], 1e-9);

@@ -292,7 +292,9 @@ fn effects_that_a_robot_cannot_have_are_faults_of_its_file() {
         {"effect": "spring", "at": {"link": "LINK"}},
         {"effect": "coriolis", "at": "model"},
         {"effect": "base_tilt", "at": {"link": "LINK"}},
-        {"effect": "damper", "at": {"link": "LINK"}}]"#;
+        {"effect": "damper", "at": {"link": "LINK"}},
+        {"effect": "viscous", "at": {"link": "LINK", "side": "link"}, "parameters": {"fv": 1}},
+        {"effect": "torque_gain", "at": {"link": "LINK", "side": "link"}}]"#;
     let effects = effects.replace("LINK", &name);
     let text =
         text("planar_2r").replacen("\"links\"", &format!("\"effects\": {effects}, \"links\""), 1);
@@ -306,6 +308,8 @@ fn effects_that_a_robot_cannot_have_are_faults_of_its_file() {
         ("/effects/6", "the model has the term already"),
         ("/effects/7", "`base_tilt` acts on the whole model, not here"),
         ("/effects/8", "`damper` could change: the joint has no series spring"),
+        ("/effects/9", "`viscous` could change: the joint has no series spring, and so no sides"),
+        ("/effects/10", "`torque_gain` acts on a place without a side"),
     ] {
         let found = said.lines().any(|line| line.contains(place) && line.contains(what));
         assert!(found, "{place}: {what}\nnot in\n{said}");

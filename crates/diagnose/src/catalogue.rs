@@ -54,17 +54,15 @@ pub fn spring_candidates(
     springs: &[Spring],
     model: &RegressionModel,
 ) -> Vec<Candidate> {
-    let of = |effect: &Effect, joint: JointIndex| {
-        let is_behind_spring = effect.is_of_any_bearing();
-        if effect.at != EffectSite::Spring && !is_behind_spring {
-            return None;
-        }
+    let is_asked = |one: &&Effect| one.at == EffectSite::Spring || one.is_of_any_bearing();
+    let of = |(effect, joint): (&Effect, JointIndex)| {
+        let is_behind_spring = effect.at != EffectSite::Spring;
         let effect = effect.on_side(is_behind_spring.then_some(SpringSide::Link));
         let found = on_joint(&effect, &model.joints[joint.0], joint, None)?;
         Some(Candidate { is_behind_spring, ..found })
     };
-    let all = effects.iter().flat_map(|effect| springs.iter().map(move |one| (effect, one.joint)));
-    all.filter_map(|(effect, joint)| of(effect, joint)).collect()
+    let of_effect = |effect| springs.iter().map(move |spring| (effect, spring.joint));
+    effects.iter().filter(is_asked).flat_map(of_effect).filter_map(of).collect()
 }
 
 /// An effect that changes the model: on each moving link, or on the whole.

@@ -157,10 +157,9 @@ impl JointLaw {
     /// was demanded beyond a clip it says nothing.
     fn demanded(&self, motion: &Motion<'_>, values: &[f64]) -> Response {
         let mut response = self.followed(motion, values);
-        let lacks: Vec<f64> =
-            response.torque[0].iter().copied().filter(|lack| *lack != 0.0).collect();
+        let lacks = response.torque[0].iter().copied().filter(|lack| *lack != 0.0);
         let noise = motion.signals.torque_noise[self.joint.0];
-        if rms(&lacks) < OF_NOISE * noise {
+        if rms(&lacks.collect::<Vec<f64>>()) < OF_NOISE * noise {
             let columns = response.torque.iter_mut().chain(response.gradient.iter_mut().flatten());
             columns.for_each(|column| column.fill(0.0));
         }

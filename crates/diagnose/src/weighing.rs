@@ -252,11 +252,10 @@ impl<'a> Weighing<'a> {
 
     /// The variance of white noise of a measured torque in its lines.
     fn torque_noise(&self, joint: JointIndex) -> f64 {
-        let of_log = |signals: &Signals| {
-            signals.torque_noise[joint.0].powi(2) * signals.log_step_s / signals.row_step_s()
-        };
-        let all: Vec<f64> = self.sets.iter().flat_map(|data| &data.signals).map(of_log).collect();
-        all.iter().sum::<f64>() / all.len().max(1) as f64
+        let logs = || self.sets.iter().flat_map(|data| &data.signals);
+        let square = |log: &Signals| log.torque_noise[joint.0].powi(2);
+        let all = logs().map(|log| square(log) * log.log_step_s / log.row_step_s());
+        all.sum::<f64>() / logs().count().max(1) as f64
     }
 
     /// What an effect does at the joint where that is most, as a share of its torque.

@@ -53,11 +53,10 @@ impl Unpredicted {
     /// a row and l what a filter took of its noise, 1/2 log((v + l) / v).
     fn smaller_noise(&self, cells: &[(usize, Range<usize>, f64)]) -> f64 {
         let Some((channel, lost)) = &self.narrowed else { return 0.0 };
-        let own = cells.iter().filter(|(of, ..)| of == channel);
         let of_cell = |(_, rows, variance): &(usize, Range<usize>, f64)| {
             lost[rows.clone()].iter().map(|lost| 0.5 * (lost / variance).ln_1p()).sum::<f64>()
         };
-        own.map(of_cell).sum()
+        cells.iter().filter(|(of, ..)| of == channel).map(of_cell).sum()
     }
 
     /// What the rows of a channel do not earn: `known` is taken away from them, and each of its

@@ -303,8 +303,8 @@ fn saturation_and_encoder_steps_are_remarked() {
     assert_eq!(log.joints[1].step, None);
 }
 
-/// Whatever a log is mapped and repaired by: degrees with five digits, single precision, a row that
-/// is missing, times that scatter so that it is brought to equal distances, a cell without a number.
+/// Whatever a log is mapped and repaired by: degrees with five digits, single precision, a row
+/// that is missing, times that scatter, a cell without a number.
 #[test]
 fn steps_are_those_of_the_log_before_any_repair() {
     let step_deg = 360.0 / 262_144.0;

@@ -259,10 +259,8 @@ pub(super) fn encoder_step(q: &[f64]) -> Option<f64> {
     let digit = printed_digit(&q);
     let is_single = digit.is_none() && q.iter().all(|&q| f64::from(q as f32) == q);
     let rounding = size * if is_single { SINGLE } else { ROUNDED };
-    let of = |off: f64| {
-        let step = |times| of_multiples(&moved, least / f64::from(times), off);
-        (1..=MOST_OF_LEAST).find_map(step)
-    };
+    let guess = |times: u32| least / f64::from(times);
+    let of = |off| (1..=MOST_OF_LEAST).find_map(|times| of_multiples(&moved, guess(times), off));
     let in_digits = |digit: f64| of(digit).filter(|step| digit <= DIGIT * step);
     // Digits are multiples of themselves: steps above them are looked for first.
     let of_digits = digit.filter(|_| moved.len() >= FEWEST_MOVES).and_then(in_digits);

@@ -90,9 +90,9 @@ pub const LEAST_SHOWN: f64 = 1e-5;
 /// Starts of an effect without amplitude whose slopes are looked at, the best ones.
 pub const STARTS: usize = 8;
 
-/// Candidates that are weighed whole after the first look, and the nats below the best from which
-/// on none is.
-pub const WEIGHED: usize = 14;
+/// Candidates that are weighed whole after the first look, some more than ever were asked for, and
+/// the nats below the best from which on none is.
+pub const WEIGHED: usize = 16;
 /// See [`WEIGHED`].
 pub const FAR: f64 = 60.0;
 /// The share of its gain that a law may lose in the first look, where it stands at one of its

@@ -2,7 +2,7 @@
 
 use super::floor::rms;
 use super::given::Belief;
-use super::law::{Asked, Law, Motion, Response};
+use super::law::{Asked, Law, Motion, OnlyOne, Response};
 use crate::policy::joint_law::{ALL_GIVEN, OF_NOISE};
 use denavit_codegen::effect::{Channel, EffectSite, SpringSide};
 use denavit_evidence::Unpredicted;
@@ -45,17 +45,6 @@ pub(super) struct JointLaw {
     acts: Acts,
     /// What the model says of its parameters.
     pub(super) beliefs: Vec<Belief>,
-}
-
-/// What of a change of a measured torque the friction of a drive that rests does not balance.
-fn unbalanced(motion: &Motion<'_>, mut response: Response) -> Response {
-    for (place, equation) in response.equations.iter().enumerate() {
-        let mut by: Vec<&mut [f64]> =
-            response.gradient.iter_mut().map(|all| all[place].as_mut_slice()).collect();
-        let torque = &mut response.torque[place];
-        motion.signals.unbalanced(JointIndex(*equation), torque, &mut by);
-    }
-    response
 }
 
 /// The samples of a joint in a motion: of its drive, which may be before a spring.
@@ -157,9 +146,9 @@ impl JointLaw {
     /// was demanded beyond a clip it says nothing.
     fn demanded(&self, motion: &Motion<'_>, values: &[f64]) -> Response {
         let mut response = self.followed(motion, values);
-        let lacks = response.torque[0].iter().copied().filter(|lack| *lack != 0.0);
+        let lacks: Vec<f64> = response.torque[0].iter().copied().filter(|l| *l != 0.0).collect();
         let noise = motion.signals.torque_noise[self.joint.0];
-        if rms(&lacks.collect::<Vec<f64>>()) < OF_NOISE * noise {
+        if rms(&lacks) < OF_NOISE * noise {
             let columns = response.torque.iter_mut().chain(response.gradient.iter_mut().flatten());
             columns.for_each(|column| column.fill(0.0));
         }
@@ -208,11 +197,11 @@ impl JointLaw {
             (Acts::Gap | Acts::Sprung, Asked::Gradient) => self.behind(motion, values),
             (Acts::Gap | Acts::Sprung, Asked::Torque) => self.behind_torque(motion, values),
         };
-        let found = found.unwrap_or_else(nothing);
-        match self.acts {
-            Acts::Delay | Acts::Followed => unbalanced(motion, found),
-            _ => found,
+        let mut found = found.unwrap_or_else(nothing);
+        if matches!(self.acts, Acts::Delay | Acts::Followed) {
+            motion.signals.unbalanced(self.joint, &mut found);
         }
+        found
     }
 }
 
@@ -238,8 +227,13 @@ impl Law for JointLaw {
         self.law.is_of_motion() && self.law.on_second().is_none_or(EffectLaw::is_of_motion)
     }
 
-    fn transmission_of(&self) -> Option<JointIndex> {
-        self.law.is_transmission().then_some(self.joint)
+    fn only_one_of(&self) -> Option<(OnlyOne, JointIndex)> {
+        let of = match self.law.channel()? {
+            _ if self.law.is_transmission() => OnlyOne::Transmission,
+            Channel::Torque if self.law.is_timing() => OnlyOne::Lateness,
+            _ => return None,
+        };
+        Some((of, self.joint))
     }
 
     fn unpredicted(&self, motion: Motion<'_>, values: &[f64]) -> Unpredicted {

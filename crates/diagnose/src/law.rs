@@ -120,6 +120,15 @@ pub(super) enum Asked {
     Gradient,
 }
 
+/// What a joint has one of: what two laws of it do does not add up, or is not told apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OnlyOne {
+    /// What is between its drive and its link.
+    Transmission,
+    /// How late its torque is.
+    Lateness,
+}
+
 /// A law: torques as a function of motion and parameters.
 pub trait Law {
     /// Its parameters.
@@ -144,8 +153,8 @@ pub trait Law {
         false
     }
 
-    /// The joint whose transmission it is, of a law of one.
-    fn transmission_of(&self) -> Option<JointIndex> {
+    /// What a joint has one of, and the joint, of laws that are exchanged and never added.
+    fn only_one_of(&self) -> Option<(OnlyOne, JointIndex)> {
         None
     }
 

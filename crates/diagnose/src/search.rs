@@ -229,14 +229,11 @@ impl<'a> Search<'a> {
         parts: &[Part],
         is_asked: &dyn Fn(usize) -> bool,
     ) -> Vec<(f64, &Part)> {
-        // A drive has one transmission: what two of them do does not add up.
-        let transmission = |candidate: usize| {
-            self.weighing.candidates[candidate].law.transmission_of().map(|joint| joint.0)
-        };
+        let of = |candidate: usize| self.weighing.candidates[candidate].law.only_one_of();
         let is_there = |candidate: usize| {
-            let own = transmission(candidate);
+            let own = of(candidate);
             let mut others = parts.iter().map(|part| part.placed.candidate);
-            others.any(|other| other == candidate || own.is_some() && transmission(other) == own)
+            others.any(|other| other == candidate || own.is_some() && of(other) == own)
         };
         let mut seen: Vec<(f64, &Part)> = Vec::new();
         for (candidate, own) in self.screen.iter().enumerate() {

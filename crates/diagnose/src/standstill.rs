@@ -9,6 +9,7 @@
 //! encoder, below which nobody sees it, as friction before sliding has it (Canudas de Wit, Olsson,
 //! Åström, Lischinsky 1995).
 
+use super::law::Response;
 use super::signals::Signals;
 use crate::policy::standstill::{ANOTHER, CREEPS, LEAVES, POWER, SAME, SLIDES, UNSEEN};
 use denavit_measure::JointIndex;
@@ -175,17 +176,17 @@ impl Signals {
         &mut self.rests[joint.0]
     }
 
-    /// Takes from what a hypothesis adds to the torques of a joint, and from its derivatives, what
-    /// the friction of a drive that rests balances.
-    pub(super) fn unbalanced(&self, joint: JointIndex, torque: &mut [f64], by: &mut [&mut [f64]]) {
+    /// Takes from a change of a measured torque what friction of the drive balances at rest.
+    pub(super) fn unbalanced(&self, joint: JointIndex, change: &mut Response) {
+        let Response { torque, gradient, .. } = change;
         let beyond = |side: f64| side - side.clamp(-1.0, 1.0);
         for rest in &self.rests[joint.0] {
             for (k, [side, friction]) in rest.samples(&self.t).zip(&rest.needs) {
-                let left = side - torque[k] / friction;
+                let left = side - torque[0][k] / friction;
                 if *friction > 0.0 {
-                    torque[k] = friction * (beyond(*side) - beyond(left));
+                    torque[0][k] = friction * (beyond(*side) - beyond(left));
                     let is_held = left.abs() <= 1.0;
-                    by.iter_mut().filter(|_| is_held).for_each(|by| by[k] = 0.0);
+                    gradient.iter_mut().filter(|_| is_held).for_each(|by| by[0][k] = 0.0);
                 }
             }
         }

@@ -195,6 +195,11 @@ impl EffectLaw {
         self.channel.as_ref().is_some_and(|law| law.is_delay)
     }
 
+    /// Whether the law is of the time of its channel alone.
+    pub fn is_timing(&self) -> bool {
+        self.channel.as_ref().is_some_and(|law| law.is_timing)
+    }
+
     /// Whether the truth is what is logged, at another time: a drive that follows its command.
     pub fn follows_log(&self) -> bool {
         self.channel.as_ref().is_some_and(|law| law.is_inverse && law.is_timing)

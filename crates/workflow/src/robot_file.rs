@@ -2,9 +2,10 @@
 
 use crate::error::{Cause, Error};
 use crate::files::{Files, ModelText};
-use denavit_codegen::effect::{self, Effect};
+use denavit_codegen::effect::{self, Effect, SpringSide};
 use denavit_codegen::model::{Robot, remarks};
-use denavit_plants::effect::{ApartEffects, apart};
+use denavit_diagnose::Candidate;
+use denavit_plants::effect::{AddedLaw, ApartEffects, apart};
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
@@ -67,6 +68,9 @@ pub struct EffectUse {
     pub effect: String,
     /// Its place.
     pub at: String,
+    /// The side of the joint's series spring, if the model says that it is the link's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub side: Option<&'static str>,
     /// `known`, or what is made of laws beside the equations.
     pub treatment: &'static str,
     #[serde(skip)]
@@ -81,8 +85,9 @@ impl fmt::Display for EffectUse {
 
 impl EffectUse {
     /// Whether it is this effect in this place.
-    pub fn is_of(&self, effect: &str, at: &str) -> bool {
-        self.effect == effect && self.at == at
+    pub fn is_of(&self, own: &Candidate) -> bool {
+        let is_behind_spring = self.side.is_some();
+        self.effect == own.effect && self.at == own.at && is_behind_spring == own.is_behind_spring
     }
 }
 
@@ -131,11 +136,15 @@ impl RobotFile {
         let of = |[effect, at]: [String; 2], treatment: Treatment| EffectUse {
             effect,
             at,
+            side: None,
             treatment: treatment.name,
             words: treatment.words,
         };
         let taken_up = self.apart.taken_up.iter().cloned().map(|one| of(one, known));
-        let laws = self.apart.laws.iter().map(|one| [one.law.name.clone(), one.at.clone()]);
-        taken_up.chain(laws.map(|one| of(one, treatment))).collect()
+        let law = |one: &AddedLaw| EffectUse {
+            side: (one.side == Some(SpringSide::Link)).then_some("link"),
+            ..of([one.law.name.clone(), one.at.clone()], treatment)
+        };
+        taken_up.chain(self.apart.laws.iter().map(law)).collect()
     }
 }

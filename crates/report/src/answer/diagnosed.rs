@@ -103,7 +103,7 @@ fn given(out: &mut String, shown: &Diagnosed) -> fmt::Result {
         writeln!(out, "  {effect}")?;
         for one in &shown.found.given {
             let own = &shown.candidates[one.candidate];
-            if effect.is_of(&own.effect, &own.at) {
+            if effect.is_of(own) {
                 one.parameters.iter().try_for_each(|one| writeln!(out, "    {}", value(one)))?;
             }
         }

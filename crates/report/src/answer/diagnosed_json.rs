@@ -348,10 +348,7 @@ fn values(parameters: &[EffectValue]) -> BTreeMap<&str, ValueJson<'_>> {
 }
 
 fn given<'a>(shown: &'a Diagnosed, becomes: &'a EffectUse) -> GivenJson<'a> {
-    let is_it = |one: &&GivenEffect| {
-        let Candidate { effect, at, .. } = &shown.candidates[one.candidate];
-        becomes.is_of(effect, at)
-    };
+    let is_it = |one: &&GivenEffect| becomes.is_of(&shown.candidates[one.candidate]);
     let found = shown.found.given.iter().find(is_it);
     let parameters = found.map_or_else(BTreeMap::new, |one| values(&one.parameters));
     GivenJson { becomes, parameters }

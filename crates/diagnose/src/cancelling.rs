@@ -6,6 +6,7 @@
 use super::data::Data;
 use super::floor::rms;
 use super::rows::torques;
+use super::signals::Shared;
 use denavit_measure::JointIndex;
 
 /// What weight and all else take (roots of mean squares together), over the torque of a joint.
@@ -16,7 +17,8 @@ pub(super) fn terms_over_torque(data: &Data<'_>, joint: usize) -> f64 {
     for signals in &data.signals {
         let Some(measured) = &signals.torque[joint] else { continue };
         let mut still = signals.clone();
-        still.qd.iter_mut().chain(&mut still.qdd).for_each(|rates| rates.fill(0.0));
+        let rates = still.qd.iter_mut().chain(&mut still.qdd);
+        rates.for_each(|rates| Shared::make_mut(rates).fill(0.0));
         for joint in (0..still.joints()).map(JointIndex) {
             still.drive_mut(joint).into_iter().for_each(|rates| rates.fill(0.0));
         }

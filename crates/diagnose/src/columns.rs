@@ -3,7 +3,7 @@
 
 use super::data::Data;
 use super::gap::Gap;
-use super::signals::Signals;
+use super::signals::{Shared, Signals};
 use crate::policy::columns::AT_REST;
 use denavit_evidence::policy::{LEFT_OF_EXPLAINED, NOTHING_LIKE};
 use denavit_identify::doubt::{MisreadColumns, misread_columns};
@@ -35,9 +35,8 @@ fn explains(reading: &MisreadColumns) -> bool {
 
 /// The motion and torques of a log's rows, as the search for misread columns takes them.
 fn conditioned(signals: &Signals) -> Conditioned {
-    let rows = |all: &[Vec<f64>]| -> Vec<Vec<f64>> {
-        all.iter().map(|one| signals.rows_of(one)).collect()
-    };
+    let rows =
+        |all: &[Shared]| -> Vec<Vec<f64>> { all.iter().map(|one| signals.rows_of(one)).collect() };
     let q = rows(&signals.q);
     let rests = |q: &Vec<f64>| {
         let [low, high] = [f64::min, f64::max].map(|of| q.iter().copied().fold(q[0], of));

@@ -77,7 +77,7 @@ impl JointLaw {
         let lag_s = 2.0 * way.damping * way.swing_s;
         let ahead = deflections(&load, stiffness, lag_s / signals.log_step_s);
         let [rates, accelerations] = signals.derivatives(&ahead);
-        let moves = rates.iter().zip(&accelerations).zip(&signals.qd[self.joint.0]);
+        let moves = rates.iter().zip(&accelerations).zip(signals.qd[self.joint.0].iter());
         let side = |rate: f64| if rate == 0.0 { 0.0 } else { rate.signum() };
         let of = |((rate, acceleration), joint): ((&f64, &f64), &f64)| {
             let friction = side(joint + rate) - side(*joint);

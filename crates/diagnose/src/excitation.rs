@@ -68,7 +68,7 @@ pub(super) fn unseen(setting: &Setting<'_>, visible: &[Visible]) -> Vec<String> 
             says(format!("{name} does not move"));
         }
         let fastest =
-            signals().flat_map(|log| &log.qd[joint]).fold(0.0, |a: f64, v| a.max(v.abs()));
+            signals().flat_map(|log| log.qd[joint].iter()).fold(0.0, |a: f64, v| a.max(v.abs()));
         let of_range = described.position_limits.map(|[l, h]| ((high - low) / (h - l), "range"));
         let of_speed = described.velocity_limit.map(|limit| (fastest / limit, "speed"));
         let shares = [of_range, of_speed].into_iter().flatten();

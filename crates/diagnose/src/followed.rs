@@ -3,8 +3,7 @@
 
 use super::data::ModelTorques;
 use super::nominal::Nominal;
-use super::rows::PerJoint;
-use super::signals::Signals;
+use super::signals::{Shared, Signals};
 use super::state::{Effects, Taken};
 use crate::policy::followed::SETTLED;
 use denavit_measure::JointIndex;
@@ -59,8 +58,9 @@ impl Follower<'_> {
             states.collect::<Vec<[f64; 3]>>()
         };
         let motions: Vec<Vec<[f64; 3]>> = references.iter().map(at).collect();
-        let [q, qd, qdd] = [0, 1, 2].map(|order| -> PerJoint {
-            motions.iter().map(|motion| motion.iter().map(|at| at[order]).collect()).collect()
+        let [q, qd, qdd] = [0, 1, 2].map(|order| -> Vec<Shared> {
+            let of = |motion: &Vec<[f64; 3]>| motion.iter().map(|at| at[order]).collect();
+            motions.iter().map(|motion| Shared::new(of(motion))).collect()
         });
         signals.motor = (0..references.len())
             .map(|joint| {
@@ -114,7 +114,7 @@ fn move_motor(signals: &mut Signals, joint: JointIndex, change: &[f64]) -> Optio
     let acceleration = derivative(&rate, step_s);
     let motor = signals.motor[joint.0].as_mut()?;
     for (own, more) in motor.iter_mut().zip([change, &rate, &acceleration]) {
-        own.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        Shared::make_mut(own).iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
     }
     let [deflection, _] = signals.deflection(joint)?;
     let largest = |all: &[f64]| all.iter().fold(0.0_f64, |most, one| most.max(one.abs()));

@@ -283,7 +283,7 @@ impl Law for RobotLaw {
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
         let signals = motion.signals;
         let [q, qd, qdd] = [&signals.q, &signals.qd, &signals.qdd]
-            .map(|all| all.iter().map(Vec::as_slice).collect::<Vec<&[f64]>>());
+            .map(|all| all.iter().map(|one| one.as_slice()).collect::<Vec<&[f64]>>());
         let AddedTorques { mut torque, mut gradient } =
             self.effect.torques([&q, &qd, &qdd], values, motion.numbers);
         // What moves the bodies is passed on by the springs.

@@ -7,7 +7,7 @@
 
 use super::nominal::{Nominal, Phi};
 use super::rows::{PerJoint, torques as torques_of};
-use super::signals::Signals;
+use super::signals::{Shared, Signals};
 use crate::policy::known::{CREEP, RINGING};
 use denavit_evidence::policy;
 use denavit_measure::JointIndex;
@@ -85,7 +85,7 @@ fn heights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
         let mut moved = signals.clone();
         for joint in 0..signals.joints() {
             moved.drive_mut(JointIndex(joint))[0].fill(direction * CREEP);
-            moved.qd[joint].fill(direction * CREEP);
+            Shared::make_mut(&mut moved.qd[joint]).fill(direction * CREEP);
         }
         torques_of(nominal, &moved, phi)
     };

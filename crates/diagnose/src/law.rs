@@ -137,7 +137,7 @@ pub trait Law {
     /// What it adds to the torques of a motion.
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response;
 
-    /// The same without derivatives.
+    /// The same without derivatives, for a first look: at least in the equation of its joint.
     fn torque(&self, motion: Motion<'_>, values: &[f64]) -> Response {
         Response { gradient: Vec::new(), ..self.response(motion, values) }
     }

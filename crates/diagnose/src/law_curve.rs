@@ -66,8 +66,10 @@ impl LawCurve {
             let signals = &data.signals[stretch.log.0];
             let load = &state.torques.held_out[stretch.log.0].load;
             let rows = &mut equations[stretch.equation];
-            let of = [&signals.qd, &signals.q, load, &signals.qdd];
-            let of = of.map(|all| &all[stretch.joint.0]).into_iter().chain([&signals.t]);
+            let joint = stretch.joint.0;
+            let [q, qd, qdd] =
+                [&signals.q, &signals.qd, &signals.qdd].map(|all| all[joint].as_slice());
+            let of = [qd, q, &load[joint], qdd, &signals.t];
             for (all, signal) in rows.quantities.iter_mut().zip(of) {
                 all.extend(signals.at_rows(signal));
             }

@@ -2,8 +2,9 @@
 
 use super::nominal::{Nominal, Phi};
 use super::rows::{PerJoint, of_axes};
-use super::signals::Signals;
+use super::signals::{Shared, Signals};
 use denavit_measure::JointIndex;
+use std::rc::Rc;
 
 /// Derivatives of the loads of all joints, and of what springs pass on, by the position, velocity
 /// and acceleration of one joint, at the samples of a motion.
@@ -26,13 +27,14 @@ impl LoadSlopes {
         phi: &Phi,
         joint: JointIndex,
     ) -> Self {
-        let moved = |of: fn(&mut Signals) -> &mut Vec<Vec<f64>>, by: f64| {
+        let moved = |of: fn(&mut Signals) -> &mut Vec<Shared>, by: f64| {
             let mut signals = signals.clone();
-            of(&mut signals)[joint.0].iter_mut().for_each(|sample| *sample += by);
+            let all = Rc::make_mut(&mut of(&mut signals)[joint.0]);
+            all.iter_mut().for_each(|sample| *sample += by);
             of_axes(nominal, &signals, &phi.loads, true)
         };
         // loads are of the second degree in velocities and of the first in accelerations
-        let slopes = |of: fn(&mut Signals) -> &mut Vec<Vec<f64>>, by: f64| {
+        let slopes = |of: fn(&mut Signals) -> &mut Vec<Shared>, by: f64| {
             let (mut ahead, behind) = (moved(of, by), moved(of, -by));
             let both = ahead.iter_mut().flatten().zip(behind.iter().flatten());
             both.for_each(|(ahead, behind)| *ahead = (*ahead - behind) / (2.0 * by));
@@ -55,15 +57,29 @@ impl LoadSlopes {
     /// What all equations have more where the joint is ahead of the motion by so much at each
     /// sample [rad, m].
     pub(super) fn of(&self, signals: &Signals, ahead: &[f64]) -> PerJoint {
+        let sprung = self.sprung.iter().map(|joint| joint.0);
+        self.of_joints((0..self.by[0].len()).chain(sprung), signals, ahead)
+    }
+
+    /// The same of the joint's own equation.
+    pub(super) fn of_own(&self, signals: &Signals, ahead: &[f64]) -> Vec<f64> {
+        self.of_joints([self.joint.0], signals, ahead).swap_remove(0)
+    }
+
+    fn of_joints(
+        &self,
+        joints: impl IntoIterator<Item = usize>,
+        signals: &Signals,
+        ahead: &[f64],
+    ) -> PerJoint {
         let [rates, accelerations] = signals.derivatives(&signals.cell_means(ahead));
         let of_joint = |joint: usize| {
-            let slopes = self.by.each_ref().map(|by| by[joint].as_slice());
-            let of = |k: usize| {
-                slopes[0][k] * ahead[k] + slopes[1][k] * rates[k] + slopes[2][k] * accelerations[k]
-            };
-            (0..ahead.len()).map(of).collect()
+            let [by_q, by_qd, by_qdd] = self.by.each_ref().map(|by| &by[joint]);
+            let motion = ahead.iter().zip(&rates).zip(&accelerations);
+            let slopes = by_q.iter().zip(by_qd).zip(by_qdd);
+            let all = motion.zip(slopes);
+            all.map(|(((q, qd), qdd), ((a, b), c))| a * q + b * qd + c * qdd).collect()
         };
-        let joints = 0..self.by[0].len();
-        joints.chain(self.sprung.iter().map(|joint| joint.0)).map(of_joint).collect()
+        joints.into_iter().map(of_joint).collect()
     }
 }

@@ -34,7 +34,7 @@ impl JointLaw {
         }
         match self.law.channel() {
             Some(Channel::Position) => signals.move_joint(joint, &truth),
-            _ => signals.qd[joint.0] = truth,
+            _ => signals.qd[joint.0] = truth.into(),
         }
         let mut torques = motion.torques_of(&signals);
         for (torque, own) in torques.iter_mut().flatten().zip(motion.total.iter().flatten()) {

@@ -110,8 +110,7 @@ fn drives(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
     let mut moved = signals.clone();
     for (joint, motor) in signals.motor.iter().enumerate() {
         if let Some([_, rates, accelerations]) = motor {
-            moved.qd[joint].clone_from(rates);
-            moved.qdd[joint].clone_from(accelerations);
+            (moved.qd[joint], moved.qdd[joint]) = (rates.clone(), accelerations.clone());
         }
     }
     of_axes(nominal, &moved, &phi.drives, false)

@@ -15,6 +15,7 @@ use denavit_measure::condition::{Butterworth, Laps, STENCIL, acceleration, rate}
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::{Random, between, cubic, derivative};
 use std::ops::Range;
+use std::rc::Rc;
 
 /// The filters of a diagnosis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,6 +39,9 @@ const ORDER: usize = 4;
 /// Signals that pass a filter side by side.
 const LANES: usize = 4;
 
+/// A signal that motions share which differ in others.
+pub(super) type Shared = Rc<Vec<f64>>;
+
 /// Motion and torque of one log.
 #[derive(Clone, Debug)]
 pub struct Signals {
@@ -52,14 +56,14 @@ pub struct Signals {
     /// The time of each sample of the motion \[s\].
     pub t: Vec<f64>,
     /// Positions, filtered [rad, m], joint by joint.
-    pub q: Vec<Vec<f64>>,
+    pub q: Vec<Shared>,
     /// Rates [rad/s, m/s].
-    pub qd: Vec<Vec<f64>>,
+    pub qd: Vec<Shared>,
     /// Accelerations [rad/s^2, m/s^2].
-    pub qdd: Vec<Vec<f64>>,
+    pub qdd: Vec<Shared>,
     /// Position, rate and acceleration of the motor of a joint behind a spring, on the joint's
     /// side.
-    pub motor: Vec<Option<[Vec<f64>; 3]>>,
+    pub motor: Vec<Option<[Shared; 3]>>,
     /// Where the drive of a joint rests.
     pub(super) rests: Vec<Vec<Rest>>,
     /// Torques of the rows, through the filter [N m, N]; none where none was measured.
@@ -141,7 +145,8 @@ impl Signals {
         let t = (0..kept.len() * within)
             .map(|k| start_s + step_s * kept.start as f64 + fine * k as f64 - offset)
             .collect();
-        let [q, qd, qdd, position_noise, motor_noise] = [const { Vec::new() }; 5];
+        let ([q, qd, qdd], [position_noise, motor_noise]) =
+            ([const { Vec::new() }; 3], [const { Vec::new() }; 2]);
         let (torque, measured, motor, rests) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut signals = Self {
             file,
@@ -202,14 +207,14 @@ impl Signals {
         let rates = |q: &[f64]| fine(kept.clone().map(|k| rate(q, k) / h).collect());
         let accelerations =
             |q: &[f64]| fine(kept.clone().map(|k| acceleration(q, k) / (h * h)).collect());
-        self.qd.push(rates(&q));
-        self.qdd.push(accelerations(&q));
+        self.qd.push(Rc::new(rates(&q)));
+        self.qdd.push(Rc::new(accelerations(&q)));
         self.motor.push(motor.map(|mut motor| {
             wide.zero_phase(&mut motor);
             let (rates, accelerations) = (rates(&motor), accelerations(&motor));
-            [fine(motor[kept.clone()].to_vec()), rates, accelerations]
+            [fine(motor[kept.clone()].to_vec()), rates, accelerations].map(Rc::new)
         }));
-        self.q.push(fine(q[kept.clone()].to_vec()));
+        self.q.push(Rc::new(fine(q[kept.clone()].to_vec())));
         self.rest(JointIndex(self.rests.len() - 1));
         let measured = tau.map(|tau| tau[kept].to_vec());
         let rows = measured.clone().map(|tau| self.row_samples(&self.filtered(tau)));
@@ -224,6 +229,7 @@ impl Signals {
             Some([_, rates, accelerations]) => [rates, accelerations],
             None => [&mut self.qd[joint.0], &mut self.qdd[joint.0]],
         }
+        .map(Rc::make_mut)
     }
 
     /// The motion with another error of its encoders.
@@ -255,12 +261,13 @@ impl Signals {
 
     /// Gives a joint other positions, with the rates and accelerations that the difference adds.
     pub fn move_joint(&mut self, joint: JointIndex, positions: &[f64]) {
-        let cells: Vec<f64> = positions.iter().zip(&self.q[joint.0]).map(|(a, b)| a - b).collect();
+        let cells: Vec<f64> =
+            positions.iter().zip(self.q[joint.0].iter()).map(|(a, b)| a - b).collect();
         let cells = self.cell_means(&cells);
         let [rates, accelerations] = self.derivatives(&cells);
         add(&mut self.qd[joint.0], &rates);
         add(&mut self.qdd[joint.0], &accelerations);
-        self.q[joint.0] = positions.to_vec();
+        self.q[joint.0] = Rc::new(positions.to_vec());
         self.rest(joint);
     }
 
@@ -279,13 +286,18 @@ impl Signals {
     /// The motion at a few of its samples, of which there are no rows.
     pub(super) fn at(&self, samples: &[usize]) -> Self {
         let at = |signal: &Vec<f64>| samples.iter().map(|&k| signal[k]).collect::<Vec<f64>>();
-        let all = |signals: &[Vec<f64>]| signals.iter().map(at).collect();
+        let shared = |signal: &Shared| Rc::new(at(signal));
+        let all = |signals: &[Shared]| signals.iter().map(shared).collect();
         Self {
             t: at(&self.t),
             q: all(&self.q),
             qd: all(&self.qd),
             qdd: all(&self.qdd),
-            motor: self.motor.iter().map(|m| m.as_ref().map(|m| m.each_ref().map(at))).collect(),
+            motor: self
+                .motor
+                .iter()
+                .map(|m| m.as_ref().map(|m| m.each_ref().map(shared)))
+                .collect(),
             ..self.clone()
         }
     }
@@ -328,7 +340,7 @@ impl Signals {
 
     /// The frequency up to which references drive the motion \[Hz\].
     pub(super) fn driven_hz(&self) -> f64 {
-        let lines = |rate: &Vec<f64>| cosine_lines(&self.at_rows(rate));
+        let lines = |rate: &Shared| cosine_lines(&self.at_rows(rate));
         let all: Vec<Vec<f64>> = self.qd.iter().map(lines).collect();
         let line_hz = 0.5 / (self.rows() as f64 * self.row_step_s());
         let of_joint = |lines: &Vec<f64>| line_hz * last_driven(lines) as f64;
@@ -435,8 +447,8 @@ impl Signals {
     }
 }
 
-fn add(signal: &mut [f64], other: &[f64]) {
-    signal.iter_mut().zip(other).for_each(|(sum, other)| *sum += other);
+fn add(signal: &mut Shared, other: &[f64]) {
+    Rc::make_mut(signal).iter_mut().zip(other).for_each(|(sum, other)| *sum += other);
 }
 
 #[cfg(test)]

@@ -165,7 +165,7 @@ fn library(
     for other in (0..names.len()).filter(|other| *other != joint.0) {
         let [v, a] = signals.of_drive(JointIndex(other));
         let text = names[other];
-        all.push((format!("q_{text}"), signals.q[other].clone()));
+        all.push((format!("q_{text}"), signals.q[other].to_vec()));
         all.push((format!("qd_{text}"), v.clone()));
         all.push((format!("qd_{text}^2"), of_one(v, &|v| v * v)));
         all.push((format!("sgn qd_{text}"), of_one(v, &f64::signum)));

@@ -3,27 +3,24 @@
 /// A signal at so many places, at least one, in the cell of each sample, by the cubic through four
 /// samples. Beyond its ends it goes on turned about its last sample.
 pub fn between(signal: &[f64], within: usize) -> Vec<f64> {
-    let last = signal.len() as isize - 1;
-    let at = |k: isize| {
-        let within = k.clamp(0, last);
-        let turned = (2 * within - k).clamp(0, last);
-        2.0 * signal[within as usize] - signal[turned as usize]
-    };
+    let (Some(first), Some(last)) = (signal.first(), signal.last()) else { return Vec::new() };
+    let turned = |end: f64, inner: usize| 2.0 * end - signal[inner.min(signal.len() - 1)];
+    let from_last = |steps: usize| (signal.len() - 1).saturating_sub(steps);
+    let before = [turned(*first, 2), turned(*first, 1)];
+    let behind = [turned(*last, from_last(1)), turned(*last, from_last(2))];
+    let extended = [before.as_slice(), signal, behind.as_slice()].concat();
     let middle = 0.5 * (within - 1) as f64;
+    // Of five samples around a place those from the one before it count, to the second after it.
     let of_part = |part: usize| {
         let x = (part as f64 - middle) / within as f64;
-        // From the sample before a place to the one after.
-        let (first, u) = if x < 0.0 { (0, x + 1.0) } else { (1, x) };
-        (first, cubic_weights(u))
+        let [a, b, c, d] = cubic_weights(if x < 0.0 { x + 1.0 } else { x });
+        if x < 0.0 { [a, b, c, d, 0.0] } else { [0.0, a, b, c, d] }
     };
-    let parts: Vec<(usize, [f64; 4])> = (0..within).map(of_part).collect();
+    let parts: Vec<[f64; 5]> = (0..within).map(of_part).collect();
     let mut fine = Vec::with_capacity(signal.len() * within);
-    for k in 0..signal.len() as isize {
-        let around = [-2, -1, 0, 1, 2].map(|offset| at(k + offset));
-        for (first, weights) in &parts {
-            let both = around[*first..].iter().zip(weights);
-            fine.push(both.map(|(sample, weight)| sample * weight).sum());
-        }
+    for around in extended.windows(5) {
+        let of = |weights: &[f64; 5]| around.iter().zip(weights).map(|(a, b)| a * b).sum::<f64>();
+        fine.extend(parts.iter().map(of));
     }
     fine
 }

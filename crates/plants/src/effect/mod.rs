@@ -9,6 +9,8 @@
 //! Samples are columns; columns that a law does not use may be empty.
 
 mod added;
+mod affine;
+mod behind;
 mod channel;
 mod program;
 mod robot;

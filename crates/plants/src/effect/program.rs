@@ -51,11 +51,16 @@ impl LawProgram {
 
     /// All outputs for many samples, one column for each.
     pub(super) fn run(&self, inputs: &[&[f64]], values: &[f64], samples: usize) -> Vec<Vec<f64>> {
-        let mut batch = BatchEvaluator::new(&self.program.routines[0], &self.prelude(values));
+        let mut batch = self.batch(values);
         let mut outputs = vec![vec![0.0; samples]; batch.outputs()];
         let mut columns: Vec<&mut [f64]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
         batch.evaluate(inputs, &mut columns).expect("columns that a law uses have one length");
         outputs
+    }
+
+    /// The routine made ready for many samples.
+    pub(super) fn batch(&self, values: &[f64]) -> BatchEvaluator<f64> {
+        BatchEvaluator::new(&self.program.routines[0], &self.prelude(values))
     }
 
     /// The routine made ready for one sample after the other.

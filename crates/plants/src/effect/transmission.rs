@@ -9,9 +9,9 @@
 //! ```
 //!
 //! with s how far th is ahead of q, k and d only beyond half the play, where k counts what is
-//! beyond. Steps are short against the swing of the rotor on the transmission; the position of the
-//! joint is the cubic of positions and rates between samples. Friction holds a rotor that it stops
-//! within a step. What reaches the joint is T.
+//! beyond. Steps are short against the swing of a rotor on a transmission that hardly gives way, and
+//! the same on all; the position of the joint is the cubic of positions and rates between samples.
+//! Friction holds a rotor that it stops within a step. What reaches the joint is T.
 //!
 //! The same rotor on a transmission that hardly gives way is what it is compared with: that drives
 //! stick while they turn around, which no model that takes the sign of a rate knows, is in both.
@@ -119,44 +119,67 @@ struct Rotor {
     half: f64,
 }
 
+/// Rotors that are moved side by side.
+const LANES: usize = 4;
+
 impl Rotor {
-    /// What reaches the joint at each sample [N m, N].
-    fn along(&self, samples: &JointSamples<'_>) -> Vec<f64> {
+    /// What reaches the joint of each rotor at each sample [N m, N].
+    fn all_along(rotors: &[Self], samples: &JointSamples<'_>) -> Vec<Vec<f64>> {
+        let lanes = |rotors: &[Self]| -> Vec<Vec<f64>> {
+            let means =
+                Self::along(std::array::from_fn(|k| rotors[k.min(rotors.len() - 1)]), samples);
+            let of_lane = |lane: usize| {
+                // of the steps before a sample and of those behind it
+                let mean =
+                    |k: usize| 0.5 * (means[k][lane] + means[(k + 1).min(means.len() - 1)][lane]);
+                (0..means.len()).map(mean).collect()
+            };
+            (0..rotors.len()).map(of_lane).collect()
+        };
+        rotors.chunks(LANES).flat_map(lanes).collect()
+    }
+
+    /// What reaches the joints of a few rotors: for each sample the mean of the steps before it,
+    /// which are the same for all, so that what differs is no error of theirs.
+    fn along(rotors: [Self; LANES], samples: &JointSamples<'_>) -> Vec<[f64; LANES]> {
         let JointSamples { t, q, qd, tau, .. } = *samples;
-        let Self { drive: Drive { inertia, viscous, coulomb, offset }, swing_s, half, .. } = *self;
-        let stiffness = inertia / (swing_s * swing_s);
-        let damping = 2.0 * self.damping * inertia / swing_s;
-        let first = tau[0] - self.drive.rigid(samples, 0);
-        let mut position = q[0] + half.copysign(first) + first / stiffness;
+        let stiffness = rotors.map(|one| one.drive.inertia / (one.swing_s * one.swing_s));
+        let damping = rotors.map(|one| 2.0 * one.damping * one.drive.inertia / one.swing_s);
+        let first = rotors.map(|one| tau[0] - one.drive.rigid(samples, 0));
+        let mut position: [f64; LANES] = std::array::from_fn(|lane| {
+            q[0] + rotors[lane].half.copysign(first[lane]) + first[lane] / stiffness[lane]
+        });
         // rates are those between positions: a leapfrog
-        let (mut rate, mut means) = (qd[0], vec![first]);
+        let mut rate = [qd[0]; LANES];
+        let mut means = vec![first];
         for k in 1..t.len() {
             let step_s = t[k] - t[k - 1];
-            let steps = (STEPS * step_s / swing_s).ceil().clamp(1.0, MOST_STEPS);
-            let (h, mut sum) = (step_s / steps, 0.0);
-            let gained = h / inertia;
-            // an estimate may be below 0, and friction pushes nothing
-            let most = (gained * coulomb).max(0.0);
+            let steps = (STEPS * step_s / SHORTEST_S).ceil().clamp(1.0, MOST_STEPS);
+            let h = step_s / steps;
+            let gained = rotors.map(|one| h / one.drive.inertia);
+            let mut sum = [0.0; LANES];
             for step in 0..steps as usize {
                 let u = step as f64 / steps;
                 let joint = between([q[k - 1], q[k]], [qd[k - 1], qd[k]], u, step_s);
-                let torque = tau[k - 1] + u * (tau[k] - tau[k - 1]) - offset;
-                let ahead = position - joint[0];
-                let beyond = ahead - ahead.clamp(-half, half);
-                let mut reaches = self.drag * inertia * (rate - joint[1]);
-                if beyond != 0.0 {
-                    reaches += stiffness * beyond + damping * (rate - joint[1]);
+                let torque = tau[k - 1] + u * (tau[k] - tau[k - 1]);
+                for (lane, Self { drive, drag, half, .. }) in rotors.iter().enumerate() {
+                    let (ahead, faster) = (position[lane] - joint[0], rate[lane] - joint[1]);
+                    let beyond = ahead - ahead.clamp(-half, *half);
+                    let pressed = stiffness[lane] * beyond + damping[lane] * faster;
+                    let pressed = if beyond == 0.0 { 0.0 } else { pressed };
+                    let reaches = drag * drive.inertia * faster + pressed;
+                    let driven = torque - drive.offset - drive.viscous * rate[lane] - reaches;
+                    let free = rate[lane] + gained[lane] * driven;
+                    // an estimate may be below 0, and friction pushes nothing
+                    let most = (gained[lane] * drive.coulomb).max(0.0);
+                    rate[lane] = free - free.clamp(-most, most);
+                    position[lane] += h * rate[lane];
+                    sum[lane] += reaches;
                 }
-                let free = rate + gained * (torque - viscous * rate - reaches);
-                rate = free - free.clamp(-most, most);
-                position += h * rate;
-                sum += reaches;
             }
-            means.push(sum / steps);
+            means.push(sum.map(|sum| sum / steps));
         }
-        // of the steps before a sample and of those behind it
-        means.push(means[means.len() - 1]);
-        means.windows(2).map(|both| 0.5 * (both[0] + both[1])).collect()
+        means
     }
 }
 
@@ -195,8 +218,9 @@ impl EffectLaw {
     /// numbers are among the samples.
     pub fn through(&self, samples: &JointSamples<'_>, values: &[f64]) -> Option<Transmitted> {
         let rotor = self.rotor(samples, values).filter(|_| samples.t.len() > 1)?;
-        let rigid = Rotor { swing_s: SHORTEST_S, half: 0.0, ..rotor }.along(samples);
-        let passed = rotor.along(samples);
+        let rigid = Rotor { swing_s: SHORTEST_S, half: 0.0, ..rotor };
+        let mut both = Rotor::all_along(&[rigid, rotor], samples).into_iter();
+        let (rigid, passed) = both.next().zip(both.next())?;
         let size = |torque: &[f64]| torque.iter().map(|torque| torque.abs()).sum::<f64>();
         let share = size(&passed) / size(&rigid).max(f64::MIN_POSITIVE);
         let torque = rigid.iter().zip(&passed).map(|(rigid, passed)| rigid - passed).collect();
@@ -210,16 +234,23 @@ impl EffectLaw {
         values: &[f64],
         Transmitted { passed, .. }: &Transmitted,
     ) -> Vec<Vec<f64>> {
-        let by = |place: usize| -> Vec<f64> {
+        let step = |place: usize| {
             let start = self.parameters[place].start.first().copied().unwrap_or(1.0);
-            let size = if values[place] > 0.0 { values[place] } else { start };
-            let mut moved = values.to_vec();
-            moved[place] += DIFFERENCE * size;
-            let rotor = self.rotor(samples, &moved);
-            let moved = rotor.map_or_else(|| passed.clone(), |rotor| rotor.along(samples));
-            passed.iter().zip(moved).map(|(a, b)| (a - b) / (DIFFERENCE * size)).collect()
+            DIFFERENCE * if values[place] > 0.0 { values[place] } else { start }
         };
-        (0..values.len()).map(by).collect()
+        let moved = |place: usize| {
+            let mut moved = values.to_vec();
+            moved[place] += step(place);
+            self.rotor(samples, &moved)
+        };
+        let rotors: Vec<Option<Rotor>> = (0..values.len()).map(moved).collect();
+        let moving: Vec<Rotor> = rotors.iter().flatten().copied().collect();
+        let mut all = Rotor::all_along(&moving, samples).into_iter();
+        let by = |(place, rotor): (usize, Option<Rotor>)| -> Vec<f64> {
+            let moved = rotor.and_then(|_| all.next()).unwrap_or_else(|| passed.clone());
+            passed.iter().zip(moved).map(|(a, b)| (a - b) / step(place)).collect()
+        };
+        rotors.into_iter().enumerate().map(by).collect()
     }
 
     fn rotor(&self, samples: &JointSamples<'_>, values: &[f64]) -> Option<Rotor> {

@@ -44,10 +44,7 @@ impl JointLaw {
         let friction = signals.qd[joint.0].iter().map(|qd| drive.friction(*qd));
         let loads = [slow(&motion.load[joint.0]), slow(&friction.collect::<Vec<f64>>())];
         let of = |values: &[f64]| vec![self.ahead(signals, drive, &loads, values)];
-        let step = |place: usize| {
-            let start = self.law.parameters[place].start.first().copied().unwrap_or(1.0);
-            DIFFERENCE * if values[place] > 0.0 { values[place] } else { start }
-        };
+        let step = |place: usize| self.law.parameters[place].step(values[place], DIFFERENCE);
         let torque = of(values);
         let gradient = match asked {
             Asked::Torque => Vec::new(),

@@ -230,7 +230,7 @@ impl Law for JointLaw {
     fn only_one_of(&self) -> Option<(OnlyOne, JointIndex)> {
         let of = match self.law.channel()? {
             _ if self.law.is_transmission() => OnlyOne::Transmission,
-            Channel::Torque if self.law.is_timing() => OnlyOne::Lateness,
+            Channel::Torque | Channel::Position if self.law.is_timing() => OnlyOne::Lateness,
             _ => return None,
         };
         Some((of, self.joint))

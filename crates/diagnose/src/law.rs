@@ -125,7 +125,7 @@ pub(super) enum Asked {
 pub enum OnlyOne {
     /// What is between its drive and its link.
     Transmission,
-    /// How late its torque is.
+    /// How late its torque is after its position.
     Lateness,
 }
 

@@ -150,14 +150,16 @@ fn cancelled(diagnosis: &Diagnosis, setting: &Setting<'_>) -> Option<String> {
 /// model.
 fn left_open(diagnosis: &Diagnosis) -> f64 {
     let Gaps { after, floor, .. } = &diagnosis.held_out;
-    (after.all * after.all - floor.all * floor.all).max(0.0).sqrt()
+    let square = after.all * after.all - floor.all * floor.all;
+    // what is no number stays none
+    if square < 0.0 { 0.0 } else { square.sqrt() }
 }
 
 /// The verdict with its first reasons.
 fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) {
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let left = left_open(diagnosis);
-    if left > policy::NOTHING_LIKE {
+    if left.is_nan() || left > policy::NOTHING_LIKE {
         let why = format!(
             "the model is nothing like the logs: the torque mismatch is {}; a column of another \
              joint, sign or unit, or another robot",

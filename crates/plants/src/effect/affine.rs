@@ -8,7 +8,33 @@
 //! ```
 
 use super::states::{StateLaw, phi_1};
+use denavit_codegen::expr::{Dag, ExprId, Node};
+use rustc_hash::FxHashMap;
 use std::ops::Range;
+
+/// Whether rates are affine in states: by how they are written, for what is piecewise in a state
+/// may have no second derivative as well.
+pub(super) fn is_affine(dag: &Dag, rates: &[ExprId], states: &[ExprId]) -> bool {
+    // 0 of what has no state in it, 1 of what is affine, 2 of all else
+    let mut degrees: FxHashMap<ExprId, u32> = FxHashMap::default();
+    for expr in dag.topological(rates) {
+        let of = |operand: &ExprId| degrees[operand];
+        let node = dag.node(expr);
+        let mut least = 0;
+        node.for_each_operand(|operand| least = least.max(of(&operand)));
+        let bent = if least == 0 { 0 } else { 2 };
+        let degree = match node {
+            Node::Symbol(_) => u32::from(states.contains(&expr)),
+            Node::Neg(a) => of(&a),
+            Node::Add(a, b) | Node::Sub(a, b) => of(&a).max(of(&b)),
+            Node::Mul(a, b) => of(&a) + of(&b),
+            Node::Div(a, b) if of(&b) == 0 => of(&a),
+            _ => bent,
+        };
+        degrees.insert(expr, degree.min(2));
+    }
+    rates.iter().all(|rate| degrees[rate] < 2)
+}
 
 /// Samples of which rates are evaluated at once.
 const BLOCK: usize = 256;

@@ -61,6 +61,15 @@ impl LawParameter {
             linear: parameter.linear,
         }
     }
+
+    /// What a value is moved by for a difference: a share of its size, or of its least start where
+    /// it is 0; back from its upper bound.
+    pub fn step(&self, value: f64, share: f64) -> f64 {
+        let starts = self.start.iter().map(|start| start.abs()).filter(|start| *start > 0.0);
+        let size = if value > 0.0 { value } else { starts.fold(f64::INFINITY, f64::min) };
+        let step = if size.is_finite() { share * size } else { share };
+        if value + step > self.bounds[1] { -step } else { step }
+    }
 }
 
 /// Samples of one joint, and of the other joint of a pair. All columns that a law uses have the

@@ -7,6 +7,7 @@
 //! derivative of these steps, not of the differential equation, so that they agree with differences
 //! of two integrations.
 
+use super::affine::is_affine;
 use super::program::LawProgram;
 use super::{gradient, names};
 use crate::error::Error;
@@ -82,9 +83,8 @@ impl StateLaw {
         let is_separate = others.all(|(_, slope)| *slope == zero);
         let known: Vec<ExprId> = inputs.iter().chain(&states).copied().collect();
         let changes = gradient(dag, &slopes, &known).concat();
-        let bends = gradient(dag, &slopes, &states).concat();
         let kind = match is_separate {
-            true if bends.iter().all(|bend| *bend == zero) => Kind::Affine,
+            true if is_affine(dag, &rates, &states) => Kind::Affine,
             true => Kind::Separate,
             false if changes.iter().all(|change| *change == zero) => Kind::Steady,
             false => Kind::Changing,

@@ -234,10 +234,7 @@ impl EffectLaw {
         values: &[f64],
         Transmitted { passed, .. }: &Transmitted,
     ) -> Vec<Vec<f64>> {
-        let step = |place: usize| {
-            let start = self.parameters[place].start.first().copied().unwrap_or(1.0);
-            DIFFERENCE * if values[place] > 0.0 { values[place] } else { start }
-        };
+        let step = |place: usize| self.parameters[place].step(values[place], DIFFERENCE);
         let moved = |place: usize| {
             let mut moved = values.to_vec();
             moved[place] += step(place);

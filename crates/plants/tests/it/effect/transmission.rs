@@ -128,3 +128,38 @@ fn drag_is_passed_on_within_the_play_and_friction_of_the_joint_stays_there() {
     assert!(late(&own) > late(&joint) + 5, "{} {}", late(&own), late(&joint));
     assert_eq!(late(&joint), late(&found));
 }
+
+/// Where friction is all of the drive or all of the joint, torques have the slope that they have
+/// beside it.
+#[test]
+fn slopes_by_the_share_of_friction_are_finite_at_its_bounds() {
+    let t = times(2000);
+    let of = |f: &dyn Fn(f64) -> f64| -> Vec<f64> { t.iter().map(|&t| f(t)).collect() };
+    let (position, rate) = (of(&|t| 0.2 * (5.0 * t).sin()), of(&|t| (5.0 * t).cos()));
+    let acceleration = of(&|t| -5.0 * (5.0 * t).sin());
+    let tau = of(&|t| 0.8 * (5.0 * t).cos() - 0.3 * (5.0 * t).sin());
+    let samples = JointSamples {
+        t: &t,
+        q: &position,
+        qd: &rate,
+        qdd: &acceleration,
+        tau: &tau,
+        drive: Drive { inertia: INERTIA, viscous: 0.5, coulomb: 0.0, offset: 0.0 },
+        ..JointSamples::default()
+    };
+    let slope = |name: &str, values: &[f64]| {
+        law(name).gradient(&samples, values).pop().expect("a column for each parameter")
+    };
+    let size = |column: &[f64]| column.iter().map(|x| x * x).sum::<f64>().sqrt();
+    for (bound, inner) in [(0.0, 0.05), (1.0, 0.95)] {
+        let [bound, inner] =
+            [bound, inner].map(|share| slope("joint_elasticity", &[0.01, 0.3, share]));
+        let apart: Vec<f64> = bound.iter().zip(&inner).map(|(a, b)| a - b).collect();
+        assert!(size(&apart) < 0.1 * size(&inner), "{} {}", size(&apart), size(&inner));
+    }
+    // impacts of a play are at other times for another share
+    for share in [0.0, 1.0] {
+        let slope = size(&slope("play", &[0.02, 0.004, 0.5, 5.0, share]));
+        assert!(slope.is_finite() && slope > 0.0, "{slope}");
+    }
+}

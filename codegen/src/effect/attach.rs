@@ -65,8 +65,10 @@ fn with_effects(
 pub fn attach(robot: &mut Robot, effect: &Effect, place: usize) -> Result<(), Vec<Cause>> {
     let added = robot.effects[place].clone();
     let links = links(robot, effect, &added).map_err(|cause| vec![cause])?;
+    let side = effect.side;
     let effect = &*effect.on_side(added.side);
-    let own = |of: &AddedEffect| (of.effect.clone(), of.at, of.side);
+    // a side that is not stated is that of the law
+    let own = |of: &AddedEffect| (of.effect.clone(), of.at, of.side.unwrap_or(side));
     let is_same = |other: &AddedEffect| own(other) == own(&added);
     if robot.effects[..place].iter().any(is_same) {
         return Err(vec![Cause::AddedTwice(added.effect)]);
@@ -116,7 +118,8 @@ fn links(robot: &Robot, effect: &Effect, added: &AddedEffect) -> Result<Vec<Link
     if added.side.is_some() {
         let has_side = effect.at == EffectSite::Joint && matches!(effect.law, Law::Torque(_));
         if !has_side {
-            return wrong("a place without a side, which laws of a joint's torque have");
+            let what = "only laws of a joint's torque have a `side`";
+            return Err(Cause::NothingToChange(effect.name.clone(), what));
         }
         let EffectPlace::Link(link) = added.at else { return wrong("a joint that moves") };
         if robot.links[link].drive.and_then(|drive| drive.series_elastic).is_none() {

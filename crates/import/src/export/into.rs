@@ -1,7 +1,7 @@
 //! Values of a model into the URDF that it was made of: every other byte stays.
 
 use super::Exported;
-use super::values::{BodyNumbers, Numbers};
+use super::values::{BodyNumbers, Numbers, left_out};
 use crate::body::{entries, tensor};
 use crate::error::Error;
 use crate::exact::{decimal, product, transposed, written};
@@ -54,7 +54,7 @@ pub fn export_into(robot: &Robot, file: &str, description: &[u8]) -> Result<Expo
             _ => {}
         }
     }
-    let mut notes = Vec::new();
+    let mut notes: Vec<String> = left_out(robot).into_iter().collect();
     if !writer.missing.is_empty() {
         notes.push(format!("the model has no row for these: {}", listed(&writer.missing)));
     }

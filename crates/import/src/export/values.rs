@@ -61,11 +61,15 @@ pub(super) fn notes(numbers: &Numbers, is_urdf: bool) -> Vec<String> {
         let links = listed(&massless);
         notes.push(format!("these have inertia and no mass, which readers may refuse: {links}"));
     }
-    if !robot.effects.is_empty() {
-        let names: Vec<String> = robot.effects.iter().map(|effect| effect.effect.clone()).collect();
-        notes.push(format!("effects are left out: {}", listed(&names)));
-    }
+    notes.extend(left_out(robot));
     notes
+}
+
+/// That effects have no place in a description, if there are any.
+pub(super) fn left_out(robot: &Robot) -> Option<String> {
+    let names: Vec<String> = robot.effects.iter().map(|effect| effect.effect.clone()).collect();
+    let hint = "viscous and Coulomb friction go along as numbers of `drives`";
+    (!names.is_empty()).then(|| format!("effects are left out: {}; {hint}", listed(&names)))
 }
 
 impl Numbers {

@@ -44,6 +44,21 @@ fn values_alone_change() {
 }
 
 #[test]
+fn effects_that_a_description_cannot_have_are_said() {
+    let model = gantry();
+    let link = read(&model).links.values().nth(1).expect("a link").name.clone();
+    let added = format!(
+        r#""effects": [{{"effect": "viscous", "at": {{"link": "{link}"}},
+        "parameters": {{"fv": 1}}}}], "links""#
+    );
+    let robot = read(&model.replacen("\"links\"", &added, 1));
+    let found = export_into(&robot, "g.urdf", GANTRY.as_bytes());
+    let notes = found.unwrap_or_else(|error| panic!("{error}")).notes;
+    assert_eq!(notes, export(&robot, Format::Mjcf).expect("a description").notes);
+    assert!(notes.len() == 1 && notes[0].starts_with("effects are left out: "), "{notes:?}");
+}
+
+#[test]
 fn values_of_locked_joints_go_back_too() {
     let follows = "<mimic joint=\"swing\"/><axis xyz=\"0 0 1\"/>";
     let text = GANTRY.replace("<axis xyz=\"0 1 0\"/>", follows);

@@ -309,12 +309,29 @@ fn effects_that_a_robot_cannot_have_are_faults_of_its_file() {
         ("/effects/7", "`base_tilt` acts on the whole model, not here"),
         ("/effects/8", "`damper` could change: the joint has no series spring"),
         ("/effects/9", "`viscous` could change: the joint has no series spring, and so no sides"),
-        ("/effects/10", "`torque_gain` acts on a place without a side"),
+        ("/effects/10", "`torque_gain` could change: only laws of a joint's torque have a `side`"),
     ] {
         let found = said.lines().any(|line| line.contains(place) && line.contains(what));
         assert!(found, "{place}: {what}\nnot in\n{said}");
     }
     assert!(said.contains("did you mean `stribeck`?") && !said.contains("/effects/4"), "{said}");
+}
+
+/// A side that is not stated is that of the law: the motor's of friction.
+#[test]
+fn an_effect_stands_once_on_a_side_of_a_spring() {
+    let of = |sides: [&str; 2]| {
+        let one = |side: &str| format!(r#"{{"effect": "dahl", "at": {{"link": "knee"{side}}}}}"#);
+        let effects = format!(r#""effects": [{}], "links""#, sides.map(one).join(", "));
+        let text = text("tulip_leg").replacen("\"links\"", &effects, 1);
+        read_model("leg.json", text.as_bytes(), &[]).map_err(|error| error.to_string())
+    };
+    let (motor, link) = (r#", "side": "motor""#, r#", "side": "link""#);
+    for sides in [["", motor], [motor, motor], [link, link]] {
+        let said = of(sides).expect_err("a fault");
+        assert!(said.contains("`dahl` is added twice in this place"), "{sides:?}: {said}");
+    }
+    of(["", link]).expect("one on each side");
 }
 
 /// Loads and states of effects are quantities of the model as well.

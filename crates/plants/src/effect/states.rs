@@ -127,7 +127,8 @@ impl StateLaw {
     }
 
     /// Steps from sample to sample, each with the rates at the state that it begins with. `paths`
-    /// of states and, behind them, of their sensitivities have the first sample, and get the others.
+    /// of states and, behind them, of their sensitivities have the first sample, and get the
+    /// others.
     fn steps(&self, t: &[f64], columns: &[&[f64]], values: &[f64], paths: &mut [Vec<f64>]) {
         let (s, p) = (self.states, self.parameters);
         let mut state: Vec<f64> = paths.iter().map(|path| path[0]).collect();

@@ -9,9 +9,9 @@
 //! ```
 //!
 //! with s how far th is ahead of q, k and d only beyond half the play, where k counts what is
-//! beyond. Steps are short against the swing of a rotor on a transmission that hardly gives way, and
-//! the same on all; the position of the joint is the cubic of positions and rates between samples.
-//! Friction holds a rotor that it stops within a step. What reaches the joint is T.
+//! beyond. Steps are short against the swing of a rotor on a transmission that hardly gives way,
+//! and the same on all; the position of the joint is the cubic of positions and rates between
+//! samples. Friction holds a rotor that it stops within a step. What reaches the joint is T.
 //!
 //! The same rotor on a transmission that hardly gives way is what it is compared with: that drives
 //! stick while they turn around, which no model that takes the sign of a rate knows, is in both.

@@ -91,8 +91,9 @@ fn a_bristle_whose_rate_is_piecewise_is_that_of_small_steps() {
     };
     let of_size = |v: f64, z: f64| (v - v * z.abs()) / slip;
     let of_side = |v: f64, z: f64| if z * v.signum() < 1.0 { v / slip } else { 0.0 };
-    let rates: [(&str, &dyn Fn(f64, f64) -> f64); 2] =
-        [("(qd - qd*abs(z))/slip", &of_size), ("select(z*sign(qd) < 1, qd, 0)/slip", &of_side)];
+    let of_size: &dyn Fn(f64, f64) -> f64 = &of_size;
+    let rates =
+        [("(qd - qd*abs(z))/slip", of_size), ("select(z*sign(qd) < 1, qd, 0)/slip", &of_side)];
     for (rate_of, bristle) in rates {
         let text = format!(
             r#"{{"format": "denavit-effect/1", "name": "own", "title": "own", "description": "own",

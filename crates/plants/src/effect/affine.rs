@@ -20,9 +20,9 @@ pub(super) fn is_affine(dag: &Dag, rates: &[ExprId], states: &[ExprId]) -> bool 
     for expr in dag.topological(rates) {
         let of = |operand: &ExprId| degrees[operand];
         let node = dag.node(expr);
-        let mut least = 0;
-        node.for_each_operand(|operand| least = least.max(of(&operand)));
-        let bent = if least == 0 { 0 } else { 2 };
+        let mut largest = 0;
+        node.for_each_operand(|operand| largest = largest.max(of(&operand)));
+        let bent = if largest == 0 { 0 } else { 2 };
         let degree = match node {
             Node::Symbol(_) => u32::from(states.contains(&expr)),
             Node::Neg(a) => of(&a),

@@ -90,8 +90,6 @@ pub fn command(denavit: &Path, files: Files<'_>) -> Command {
 pub fn answer(value: &Value) -> Answer {
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     let effects = value["effects"].as_array().map_or(&[][..], Vec::as_slice);
-    let gap = &value["gap"]["validate"];
-    let of = |key: &str| gap[key].as_f64();
     let numbers = |effect: &Value| -> BTreeMap<String, [f64; 2]> {
         let entries = effect["parameters"].as_object().into_iter().flatten();
         let pair = |entry: &Value| Some([entry["value"].as_f64()?, entry["std"].as_f64()?]);
@@ -115,10 +113,7 @@ pub fn answer(value: &Value) -> Answer {
     Answer {
         verdict: text(&value["verdict"]),
         effects: effects.iter().map(named).collect(),
-        gap: match [of("before"), of("after"), of("floor")] {
-            [Some(before), Some(after), Some(floor)] => Some([before, after, floor]),
-            _ => None,
-        },
+        closed: value["share_closed"].as_f64(),
     }
 }
 

@@ -28,8 +28,8 @@ pub struct Answer {
     /// As in the command's JSON: `nothing_missing`, `explained`, ...
     pub verdict: String,
     pub effects: Vec<Named>,
-    /// Held-out gap before and after, and its floor.
-    pub gap: Option<[f64; 3]>,
+    /// Share of the explainable held-out gap that was closed.
+    pub closed: Option<f64>,
 }
 
 /// How a case went.
@@ -130,9 +130,6 @@ pub fn score(generated: &Generated, answer: &Answer) -> Score {
     };
     let weakest = generated.strengths.iter().copied().fold(f64::INFINITY, f64::min);
     let strength = if case.hidden.is_empty() { 0.0 } else { weakest };
-    let closed = answer.gap.and_then(|[before, after, floor]| {
-        (before > floor).then(|| (before - after) / (before - floor))
-    });
     let label = |hidden: &Hidden| match hidden.law.entry().name {
         "" => format!("{:?}", hidden.law),
         name => name.to_owned(),
@@ -150,7 +147,7 @@ pub fn score(generated: &Generated, answer: &Answer) -> Score {
         unambiguous: count(false),
         false_names,
         right,
-        closed,
+        closed: answer.closed,
         within: intervals(case, &named),
     }
 }

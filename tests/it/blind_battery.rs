@@ -296,7 +296,7 @@ fn scores_know_right_from_wrong() {
     };
     let says = |effects: Vec<Named>| {
         let verdict = "explained".to_owned();
-        score(&generated, &Answer { verdict, effects, gap: Some([0.2, 0.1, 0.1]) })
+        score(&generated, &Answer { verdict, effects, closed: Some(1.0) })
     };
     let right = says(vec![named("coulomb", &joint)]);
     assert!(right.right && right.unambiguous == 1 && right.closed == Some(1.0));

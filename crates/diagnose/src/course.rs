@@ -42,8 +42,11 @@ impl Search<'_> {
         // a change that is smaller than what is left beside it may be of that
         let torque = changes.torque(found.parts.len());
         let share = |channel| self.weighing.spectra.share(&torque, channel);
-        let is_seen =
-            || (0..).zip(self.open(&changes)).any(|(channel, open)| share(channel) > open);
+        let is_seen = || {
+            (0..)
+                .zip(self.weighing.open(&changes, &self.floor))
+                .any(|(channel, open)| share(channel) > open)
+        };
         (odds > policy::NAMED && change > policy::CHANGED && is_seen()).then_some(change)
     }
 }

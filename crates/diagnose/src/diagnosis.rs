@@ -12,7 +12,7 @@ use super::elastic::Spring;
 use super::error::{Cause, Error};
 use super::excitation::{Visible, visible};
 use super::floor::{NoiseFloor, floors};
-use super::gap::{Gap, share_closed};
+use super::gap::{Gap, Known};
 use super::leftover::{Leftover, leftovers};
 use super::nominal::Nominal;
 use super::regime::{Where, where_left};
@@ -67,6 +67,9 @@ pub struct Gaps {
     pub after: Gap,
     /// Of noise alone.
     pub floor: Gap,
+    /// The share of what could be explained that was explained, of rows that count for what is
+    /// known of them; none where nothing could.
+    pub closed: Option<f64>,
 }
 
 impl Gaps {
@@ -75,6 +78,7 @@ impl Gaps {
             before: Gap::new(data, before),
             after: Gap::new(data, after),
             floor: Gap::of_floor(data, floors),
+            closed: Known::new(data, floors).share_closed([before, after]),
         }
     }
 }
@@ -159,10 +163,13 @@ pub fn diagnose(
     let (z, mut search, mut found) = searched(&setting, most, watch);
     let before = setting.state(&found.before.parts, &z);
     // What does not help logs that its values were not fitted to is not told.
-    let (after, mut effects) = loop {
+    let (after, by_all, mut effects) = loop {
         let after = setting.state(&found.after.parts, &z);
-        let effects = found_effects(&setting, &search, &found, &before, &after);
-        let Some(place) = idle(&effects, setting.candidates) else { break (after, effects) };
+        let by_all = search.named(&found.after);
+        let effects = found_effects(&setting, &search, (&found, &by_all), &before, &after);
+        let Some(place) = idle(&effects, setting.candidates) else {
+            break (after, by_all, effects);
+        };
         search.drop(&mut found, place);
     };
     if let Some(aliases) = request.aliases {
@@ -172,18 +179,22 @@ pub fn diagnose(
         separate(&setting, asked, (&found, &after), filters, &mut effects);
     }
     let states = [&before, &after];
-    let leftovers = leftovers(&search.weighing.spectra, &found.after.weighed.variances);
-    search.tell_stand_ins(&found.after, &leftovers, &mut effects);
-    let unnamed = leftovers.iter().filter(|one| one.share > policy::LEFT);
+    let all_left = leftovers(&search.weighing.spectra, &found.after.weighed.variances);
+    search.tell_stand_ins(&found.after, &all_left, &mut effects);
+    let judging = setting.judging(&before.z);
+    let judged = setting.predicted(&judging, &after, &by_all);
+    let open = [(&search.weighing, &found.after), (&judging, &judged)]
+        .map(|(weighing, of)| weighing.open(of, &search.floor));
+    let unnamed = all_left.iter().filter(|one| one.share > policy::LEFT);
     let mut diagnosis = Diagnosis {
         visible: visible(&search, &found.after),
         structures: unnamed.filter_map(|one| describe(&setting, &after, one.equation)).collect(),
-        leftovers,
+        leftovers: all_left,
         effects,
         motion: request.moved.map(|moved| motion_gaps(moved, &setting, filters, states)),
         ..told(&setting, filters, &found, states)
     };
-    judge(&mut diagnosis, &setting, &found, &after, &misread);
+    judge(&mut diagnosis, &setting, (&found, &after), &open, &misread);
     Ok(diagnosis)
 }
 
@@ -324,8 +335,7 @@ fn filters_of(logs: &[MeasuredLog]) -> Result<Filters, Error> {
 
 impl Diagnosis {
     /// The share of what could be explained of held-out logs that was explained.
-    pub fn share_closed(&self) -> Option<f64> {
-        let Gaps { before, after, floor } = &self.held_out;
-        share_closed(before.all, after.all, floor.all)
+    pub const fn share_closed(&self) -> Option<f64> {
+        self.held_out.closed
     }
 }

@@ -4,7 +4,7 @@
 use super::candidate::Candidate;
 use super::error::Error;
 use super::experiment::{Ambiguity, Experiment};
-use super::gap::Gap;
+use super::gap::Known;
 use super::given::is_driven;
 use super::hypothesis::Hypothesis;
 use super::law_curve::LawCurve;
@@ -112,29 +112,29 @@ pub struct GivenEffect {
     pub parameters: Vec<EffectValue>,
 }
 
-/// The effects of a state, each with its share, its errors and what would do as well.
+/// The effects of a state, each with its share, its errors and what would do as well; with their
+/// values by all logs.
 pub(super) fn found_effects(
     setting: &Setting<'_>,
     search: &Search<'_>,
-    found: &Found,
+    (found, by_all): (&Found, &Hypothesis),
     before: &State,
     after: &State,
 ) -> Vec<FoundEffect> {
-    let gap = |state: &State| Gap::new(setting.data.held_out, &state.residual.held_out).all;
-    let floor = Gap::of_floor(setting.data.held_out, setting.floors.held_out).all;
-    // Where all was below the floor already, of what the effects closed.
-    let whole = (gap(before) - floor).max(gap(before) - gap(after)).max(f64::MIN_POSITIVE);
+    let known = Known::new(setting.data.held_out, setting.floors.held_out);
+    let gap = |state: &State| known.gap(&state.residual.held_out);
+    let whole = known.closable([before, after].map(|one| one.residual.held_out.as_slice()));
     let given = setting.given.len();
     let all = &found.after;
     let judging = setting.judging(&before.z);
-    let predicted = setting.log_predicted(&judging, after, all);
+    let predicted = setting.predicted(&judging, after, by_all).posterior;
     let of = |place: usize| {
         let mut parts = all.parts.clone();
         parts.remove(place);
         let without = search.settled(parts.clone(), Some(all));
         let taken = &after.taken[given + place];
         let reopened = setting.state(&parts, &before.z);
-        let errors = setting.errors(after, all, place);
+        let errors = setting.errors(after, by_all, place);
         FoundEffect {
             candidate: taken.candidate,
             log_odds: all.posterior - without.posterior,
@@ -142,7 +142,7 @@ pub(super) fn found_effects(
             trained: search.weighing.size(taken),
             judged: judging.size(taken),
             share: (gap(&reopened) - gap(after)) / whole,
-            log_predicted: predicted - setting.log_predicted(&judging, &reopened, &without),
+            log_predicted: predicted - setting.predicted(&judging, &reopened, &without).posterior,
             change_in_time: search.change_in_time(all, place),
             stands_for: None,
             is_named: true,

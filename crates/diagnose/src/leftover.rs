@@ -3,7 +3,9 @@
 //! Noise of sensors and of drives is as strong in the bands in which a robot moves as in the ones
 //! above. What has more in the slow ones is a disturbance, or physics without a name.
 
+use super::hypothesis::Hypothesis;
 use super::spectra::Spectra;
+use super::weighing::{Weighing, add};
 use denavit_evidence::policy;
 
 /// The excess of one channel.
@@ -33,6 +35,26 @@ pub(super) fn leftovers(spectra: &Spectra, variances: &[f64]) -> Vec<Leftover> {
         Leftover { equation, share: spectra.share_of_squares(equation, squares.sum()) }
     };
     spectra.layout.bands.iter().enumerate().map(of).collect()
+}
+
+impl Weighing<'_> {
+    /// What a hypothesis leaves of each channel, as a share of its torque.
+    pub(super) fn left(&self, hypothesis: &Hypothesis) -> Vec<f64> {
+        let mut left = self.base.left(&hypothesis.weighed.own);
+        for place in 0..hypothesis.parts.len() {
+            add(&mut left, &hypothesis.torque(place), -1.0);
+        }
+        (0..left.len()).map(|channel| self.spectra.share(&left, channel)).collect()
+    }
+
+    /// The same of what is no noise: what slow bands have beyond it, or all that is more than
+    /// sensors have.
+    pub(super) fn open(&self, hypothesis: &Hypothesis, floor: &[f64]) -> Vec<f64> {
+        let slow = leftovers(&self.spectra, &hypothesis.weighed.variances);
+        let all = self.left(hypothesis).into_iter().zip(floor).zip(slow);
+        all.map(|((left, floor), slow)| if is_broad(left, *floor) { left } else { slow.share })
+            .collect()
+    }
 }
 
 /// Whether what is left, as a share of the torque, is more than sensors have, however even its

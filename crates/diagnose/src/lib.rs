@@ -44,6 +44,7 @@ mod rows;
 mod search;
 mod signals;
 mod simulated;
+mod span;
 mod spectra;
 mod stand_in;
 mod standstill;

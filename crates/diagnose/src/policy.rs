@@ -182,8 +182,8 @@ pub(crate) mod verdict {
     pub(crate) const CANCELLED: f64 = 3.0;
 }
 
-/// `worth.rs`: How large an effect is: whether that is worth a name.
-pub(crate) mod worth {
+/// `span.rs`: What effects can do, whatever their factors are.
+pub(crate) mod span {
     /// Columns that are independent have at least this share of the largest singular value.
     pub(crate) const RANK: f64 = 1e-6;
 }

@@ -3,7 +3,6 @@
 
 use super::candidate::Candidate;
 use super::hypothesis::{Hypothesis, Part};
-use super::leftover::{is_broad, leftovers};
 use super::weighing::{Placed, Weighing, add};
 use denavit_codegen::effect::Occurrence;
 use denavit_evidence::{Glance, Terms, policy};
@@ -165,7 +164,8 @@ impl<'a> Search<'a> {
             let missing = (0..self.screen.len()).filter(is_missing);
             let missing = missing.filter_map(|candidate| self.screen[candidate].first().cloned());
             let parts = than.parts.iter().cloned().chain(missing).collect();
-            self.open(&self.weighed(parts, Some(than), policy::ROUNDS[0]))
+            let beside = self.weighed(parts, Some(than), policy::ROUNDS[0]);
+            self.weighing.open(&beside, &self.floor)
         })
     }
 
@@ -180,7 +180,8 @@ impl<'a> Search<'a> {
         allowed: &dyn Fn() -> Vec<f64>,
     ) -> bool {
         let moved = |of: &Hypothesis| 0.5 * of.weighed.own.iter().map(|z| z * z).sum::<f64>();
-        let more = self.left(one).into_iter().zip(self.left(than));
+        let left = |of: &Hypothesis| self.weighing.left(of);
+        let more = left(one).into_iter().zip(left(than));
         let more = more.map(|(one, than)| (one * one - than * than).max(0.0).sqrt());
         let more: Vec<f64> = more.collect();
         let share = policy::LEFT_OF_EXPLAINED * self.told(than, place);
@@ -195,24 +196,6 @@ impl<'a> Search<'a> {
 
     fn of(&self, part: &Part) -> &Candidate {
         &self.weighing.candidates[part.placed.candidate]
-    }
-
-    /// What a hypothesis leaves of each channel, as a share of its torque.
-    pub(super) fn left(&self, hypothesis: &Hypothesis) -> Vec<f64> {
-        let base = &self.weighing.base;
-        let mut left = base.left(&hypothesis.weighed.own);
-        for place in 0..hypothesis.parts.len() {
-            add(&mut left, &hypothesis.torque(place), -1.0);
-        }
-        (0..left.len()).map(|channel| self.weighing.spectra.share(&left, channel)).collect()
-    }
-
-    /// The same of what is no noise.
-    pub(super) fn open(&self, hypothesis: &Hypothesis) -> Vec<f64> {
-        let slow = leftovers(&self.weighing.spectra, &hypothesis.weighed.variances);
-        let all = self.left(hypothesis).into_iter().zip(&self.floor).zip(slow);
-        all.map(|((left, floor), slow)| if is_broad(left, *floor) { left } else { slow.share })
-            .collect()
     }
 
     /// A first look from parts, with the variances of a hypothesis.
@@ -298,6 +281,15 @@ impl<'a> Search<'a> {
     pub(super) fn settled(&self, parts: Vec<Part>, from: Option<&Hypothesis>) -> Hypothesis {
         let first = self.weighed(parts, from, policy::ROUNDS[1]);
         self.linearised(first, &|_| true, policy::ROUNDS[1])
+    }
+
+    /// What was found, where nothing is beside it that has its name.
+    pub(super) fn named(&mut self, found: &Hypothesis) -> Hypothesis {
+        let named = self.weighing.base_beside(&found.parts);
+        let base = std::mem::replace(&mut self.weighing.base, named);
+        let alone = self.settled(found.parts.clone(), Some(found));
+        self.weighing.base = base;
+        alone
     }
 
     /// Candidates that notice where an effect is linearised: effects of other joints hardly do.

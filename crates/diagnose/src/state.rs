@@ -64,9 +64,10 @@ impl<'a> Setting<'a> {
 
     /// The model with effects that were found by all logs, fitted to those for training alone.
     pub(super) fn state(&self, parts: &[Part], z: &[f64]) -> State {
-        let weighing = Weighing::new(vec![self.data.train], self.effects(&self.given), z);
+        let mut weighing = Weighing::new(vec![self.data.train], self.effects(&self.given), z);
+        let parts: Vec<Part> = parts.iter().map(|part| weighing.part(&part.placed)).collect();
+        weighing.base = weighing.base_beside(&parts);
         let search = Search::new(weighing, [self.candidates.len(), 0], Vec::new(), &mut |_| true);
-        let parts = parts.iter().map(|part| search.weighing.part(&part.placed)).collect();
         let fitted = search.settled(parts, None);
         self.fitted_state(&search.weighing, &fitted)
     }
@@ -103,38 +104,41 @@ impl<'a> Setting<'a> {
     }
 
     /// The deviations of an effect that was found. Another law than what is there has other values
-    /// in another motion (Chow 1960): errors have in them how far values by the logs for training
-    /// are from those by all logs.
+    /// in another motion (Chow 1960): errors are no less than how far values by the logs for
+    /// training are from those by all logs. Of a law that is there that is less than its deviation,
+    /// most of the time, and says nothing new.
     pub(super) fn errors(&self, state: &State, by_all: &Hypothesis, place: usize) -> Vec<f64> {
         let own = self.given.len() + place;
         let apart = state.taken[own].values.iter().zip(by_all.values(place));
         let both = state.deviations[own].iter().zip(apart);
-        both.map(|(deviation, (one, other))| deviation.hypot(one - other)).collect()
+        both.map(|(deviation, (one, other))| deviation.max((one - other).abs())).collect()
     }
 
-    /// The log of the evidence of held-out logs with the effects as those that were fitted have
-    /// them. Noise is that of the held-out logs: what changes between logs is no reason to leave an
-    /// effect out. What every drive has may have other values in another motion: of anything else
-    /// that is what is asked.
-    pub(super) fn log_predicted(
+    /// Held-out logs with the effects as those that were fitted have them, weighed. Noise is that
+    /// of the held-out logs: what changes between logs is no reason to leave an effect out. What
+    /// every drive has may have other values in another motion: of anything else that is what is
+    /// asked.
+    pub(super) fn predicted(
         &self,
         judging: &Weighing<'_>,
         state: &State,
         by_all: &Hypothesis,
-    ) -> f64 {
+    ) -> Hypothesis {
         let found = state.taken.iter().skip(self.given.len()).enumerate();
-        let terms = found.map(|(place, taken)| {
+        let parts = found.map(|(place, taken)| {
             let Taken { candidate, values } = taken.clone();
             let deviations = match self.candidates[candidate].is_standard() {
                 true => self.errors(state, by_all, place),
                 false => state.deviations[self.given.len() + place].clone(),
             };
             let center = values.clone();
-            judging.terms(&Placed { candidate, values, center, deviations, log_share: 0.0 })
+            judging.part(&Placed { candidate, values, center, deviations, log_share: 0.0 })
         });
-        let terms: Vec<Terms> = terms.collect();
-        let all: Vec<&Terms> = terms.iter().collect();
-        judging.base.weigh(&all, None, policy::ROUNDS[1]).log_evidence
+        let parts: Vec<Part> = parts.collect();
+        let terms: Vec<&Terms> = parts.iter().map(|part| &part.terms).collect();
+        let base = judging.base_beside(&parts);
+        let weighed = base.weigh(&terms, None, policy::ROUNDS[1]);
+        Hypothesis { posterior: weighed.log_evidence, parts, weighed }
     }
 
     /// What the model as it is given leaves of a set of logs.

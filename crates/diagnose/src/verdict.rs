@@ -41,18 +41,19 @@ impl Verdict {
     }
 }
 
-/// Judges what was found, of logs some of whose columns may be surely misread.
+/// Judges what was found, with what is open of each joint and spring in all logs, and in held-out
+/// ones by the others; of logs some of whose columns may be surely misread.
 pub(super) fn judge(
     diagnosis: &mut Diagnosis,
     setting: &Setting<'_>,
-    found: &Found,
-    after: &State,
+    (found, after): (&Found, &State),
+    open: &[Vec<f64>; 2],
     misread: &[MisreadColumns],
 ) {
     // Of a model that is nothing like the logs, nothing has a name.
     let is_alike = left_open(diagnosis) <= policy::NOTHING_LIKE;
-    let named: Vec<bool> =
-        diagnosis.effects.iter().map(|one| is_alike && is_law(diagnosis, setting, one)).collect();
+    let is_named = |one| is_alike && is_law(diagnosis, setting, open, one);
+    let named: Vec<bool> = diagnosis.effects.iter().map(is_named).collect();
     for (one, is_named) in diagnosis.effects.iter_mut().zip(named) {
         one.is_named = is_named;
     }
@@ -78,23 +79,41 @@ pub(super) fn judge(
 }
 
 /// Whether an effect is a law, and not near to something else: it stands for nothing at another
-/// joint, no effect of its joint changes in time, and what is left beside it is little, or no more
-/// than its sensors make while held-out logs ask for it. Noise of few steps of an encoder is as
-/// strong in slow bands as the motion is slow, not as in fast ones.
-fn is_law(diagnosis: &Diagnosis, setting: &Setting<'_>, one: &FoundEffect) -> bool {
+/// joint, no effect of its joint changes in time, and what is open beside it is little, in all logs
+/// and in held-out ones by the others, or no more than its sensors make while held-out logs ask for
+/// it. Noise of few steps of an encoder is as strong in slow bands as the motion is slow, not as in
+/// fast ones.
+fn is_law(
+    diagnosis: &Diagnosis,
+    setting: &Setting<'_>,
+    open: &[Vec<f64>; 2],
+    one: &FoundEffect,
+) -> bool {
     let joint = |one: &FoundEffect| setting.candidates[one.candidate].joint;
     let mut there = diagnosis.effects.iter().filter(|other| joint(other) == joint(one));
     let changes = there.any(|other| other.change_in_time.is_some());
-    let left = left_beside(setting, &diagnosis.leftovers, one);
-    let is_noise = |left: &Leftover| {
-        let floor = diagnosis.train.floor.per_joint[left.equation].unwrap_or(0.0);
+    let is_noise = |left: Leftover, gaps: &Gaps| {
+        let floor = gaps.floor.per_joint[left.equation].unwrap_or(0.0);
         left.share < floor && one.log_predicted > policy::NAMED
     };
-    let stands = left.is_none_or(|left| !is_unexplained(left, one.size) || is_noise(left));
+    let stands = |open: &[f64], size: f64, gaps: &Gaps| {
+        let left = open_beside(setting, open, one);
+        left.is_none_or(|left| !is_unexplained(left, size) || is_noise(left, gaps))
+    };
+    let Diagnosis { train, held_out, leftovers, .. } = diagnosis;
+    let slow: Vec<f64> = leftovers.iter().map(|left| left.share).collect();
+    let stands = match setting.candidates[one.candidate].is_standard() {
+        // every drive has it, whatever else there is
+        true => stands(&slow, one.size, train),
+        false => {
+            let acts = one.judged > policy::WORTH;
+            stands(&open[0], one.size, train) && (!acts || stands(&open[1], one.judged, held_out))
+        }
+    };
     stands && !changes && one.stands_for.is_none()
 }
 
-fn is_unexplained(left: &Leftover, explained: f64) -> bool {
+fn is_unexplained(left: Leftover, explained: f64) -> bool {
     left.share > policy::LEFT && left.share > policy::LEFT_OF_EXPLAINED * explained
 }
 
@@ -105,13 +124,10 @@ fn acts_at(setting: &Setting<'_>, one: &FoundEffect, left: &Leftover) -> bool {
     candidate.is_body || candidate.joint.is_none_or(|own| own == joint)
 }
 
-/// What is left most of where an effect acts.
-fn left_beside<'l>(
-    setting: &Setting<'_>,
-    leftovers: &'l [Leftover],
-    one: &FoundEffect,
-) -> Option<&'l Leftover> {
-    let own = leftovers.iter().filter(|left| acts_at(setting, one, left));
+/// What is open most of where an effect acts.
+fn open_beside(setting: &Setting<'_>, open: &[f64], one: &FoundEffect) -> Option<Leftover> {
+    let all = open.iter().enumerate().map(|(equation, &share)| Leftover { equation, share });
+    let own = all.filter(|left| acts_at(setting, one, left));
     own.max_by(|a, b| a.share.total_cmp(&b.share))
 }
 
@@ -120,7 +136,7 @@ fn unexplained<'d>(diagnosis: &'d Diagnosis, setting: &Setting<'_>) -> Option<&'
     // what explains one joint excuses nothing at another
     let unexplained = diagnosis.leftovers.iter().filter(|left| {
         let there = diagnosis.effects.iter().filter(|one| acts_at(setting, one, left));
-        is_unexplained(left, there.map(|one| one.size).fold(0.0, f64::max))
+        is_unexplained(**left, there.map(|one| one.size).fold(0.0, f64::max))
     });
     unexplained.max_by(|a, b| a.share.total_cmp(&b.share))
 }

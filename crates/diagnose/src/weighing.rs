@@ -3,9 +3,10 @@
 use super::candidate::{Candidate, Start, starts};
 use super::data::{Data, ModelTorques, RowResponse};
 use super::hypothesis::Part;
-use super::law::{Law, Motion};
+use super::law::{Law, Motion, OnlyOne};
 use super::nominal::Nominal;
 use super::signals::Signals;
+use super::span::Span;
 use super::spectra::Spectra;
 use super::state::{Effects, Taken};
 use denavit_evidence::{Base, Glance, Spectrum, Terms, Unpredicted, policy};
@@ -38,6 +39,8 @@ pub(super) struct Weighing<'a> {
     pub(super) torques: Vec<Vec<ModelTorques>>,
     pub(super) spectra: Spectra,
     pub(super) base: Base,
+    /// The columns of what the model itself is not sure of.
+    own: Vec<Spectrum>,
     /// Columns of accelerations count below this frequency \[Hz\].
     pub(super) driven_hz: f64,
 }
@@ -45,16 +48,21 @@ pub(super) struct Weighing<'a> {
 impl<'a> Weighing<'a> {
     /// Sets of logs with the torques of the model's own numbers at z, and the effects that it has.
     pub(super) fn new(sets: Vec<&'a Data<'a>>, effects: Effects<'a>, z: &[f64]) -> Self {
+        // What is too small for a name is nowhere known.
+        let mut known = z.to_vec();
+        let nominal = sets[0].nominal;
+        known[nominal.uncertain.len()..nominal.place_of_spring(0)].fill(0.0);
         let cutoff_hz = sets[0].signals.first().map_or(0.0, |signals| signals.torque_hz);
         let spectra = Spectra::new(&sets, cutoff_hz);
         let logs = sets.iter().flat_map(|data| &data.signals);
         let driven_hz = logs.map(Signals::driven_hz).fold(0.0, f64::max);
         let torques = sets.iter().map(|data| data.model_torques(z)).collect();
-        let left: Vec<Vec<f64>> = sets.iter().map(|data| data.residual_of(z)).collect();
+        let left: Vec<Vec<f64>> = sets.iter().map(|data| data.residual_of(&known)).collect();
         let rows: Vec<&[f64]> = left.iter().map(Vec::as_slice).collect();
         let mut residual = spectra.of_rows(&sets, &rows, f64::INFINITY);
         let mut weighing = Self {
             base: Base::new(spectra.layout.clone(), residual.clone(), &[]),
+            own: Vec::new(),
             sets,
             candidates: effects.candidates,
             given: effects.taken,
@@ -64,7 +72,7 @@ impl<'a> Weighing<'a> {
         };
         let mut own = weighing.own();
         // What z does is known at all frequencies, and how much of it up to some.
-        for (column, factor) in own.iter().zip(z) {
+        for (column, factor) in own.iter().zip(&known) {
             add(&mut residual, column, *factor);
         }
         for taken in effects.taken {
@@ -77,7 +85,31 @@ impl<'a> Weighing<'a> {
             }
         }
         weighing.base = Base::new(weighing.spectra.layout.clone(), residual, &own);
-        weighing
+        Self { own, ..weighing }
+    }
+
+    /// The base where what is too small for a name has the name of effects that do the same, and
+    /// how late a joint is that of a law of it: there are no two of them, of which none could say
+    /// how large each is.
+    pub(super) fn base_beside(&self, parts: &[Part]) -> Base {
+        let nominal = self.sets[0].nominal;
+        let time = nominal.uncertain.len();
+        let spans: Vec<Span> = parts.iter().map(|part| Span::of(&self.spectra, [part])).collect();
+        let mut own = self.own.clone();
+        for column in &mut own[time..nominal.place_of_spring(0)] {
+            let stacked = self.spectra.stacked(column);
+            let little = policy::SAME * stacked.norm();
+            if spans.iter().any(|span| span.outside(&stacked).norm() < little) {
+                column.clear();
+            }
+        }
+        for part in parts {
+            let law = &self.candidates[part.placed.candidate].law;
+            if let Some((OnlyOne::Lateness, joint)) = law.only_one_of() {
+                own[time].get_mut(joint.0).into_iter().for_each(Vec::clear);
+            }
+        }
+        Base::new(self.spectra.layout.clone(), self.base.data.clone(), &own)
     }
 
     /// The columns of the model's own numbers, and of what is between them and the logs.

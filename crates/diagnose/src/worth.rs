@@ -2,9 +2,8 @@
 
 use super::hypothesis::{Hypothesis, Part};
 use super::search::Search;
-use crate::policy::worth::RANK;
+use super::span::Span;
 use denavit_evidence::policy;
-use nalgebra::{DMatrix, DVector};
 
 impl Search<'_> {
     /// Whether an effect is large enough for a name beside the others, which are all that `without`
@@ -33,26 +32,7 @@ impl Search<'_> {
         let spectra = &self.weighing.spectra;
         let torque = spectra.stacked(&hypothesis.torque(place));
         let others = hypothesis.parts.iter().enumerate().filter(|(at, _)| *at != place);
-        let columns: Vec<DVector<f64>> = others
-            .flat_map(|(at, part)| {
-                part.terms.columns.iter().chain([&part.terms.known]).map(move |one| (at, one))
-            })
-            .map(|(_, spectrum)| spectra.stacked(spectrum))
-            .filter(|column| column.norm() > 0.0)
-            .map(|column| column.normalize())
-            .collect();
-        let left = match columns.is_empty() {
-            true => torque,
-            false => {
-                let svd = DMatrix::from_columns(&columns).svd(true, false);
-                let base = svd.u.expect("asked for");
-                let kept: Vec<usize> = (0..svd.singular_values.len())
-                    .filter(|&k| svd.singular_values[k] > RANK * svd.singular_values[0])
-                    .collect();
-                let base = base.select_columns(&kept);
-                &torque - &base * base.tr_mul(&torque)
-            }
-        };
+        let left = Span::of(spectra, others.map(|(_, part)| part)).outside(&torque);
         spectra.largest_share(&spectra.unstacked(&left))
     }
 

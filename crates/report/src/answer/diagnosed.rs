@@ -171,7 +171,7 @@ fn gaps(out: &mut String, shown: &Diagnosed) -> fmt::Result {
     let row = |name: &str, value: &dyn Fn(&Gap) -> Option<f64>| -> Vec<String> {
         let sets = [&found.train, &found.held_out];
         let gaps =
-            sets.into_iter().flat_map(|Gaps { before, after, floor }| [before, after, floor]);
+            sets.into_iter().flat_map(|Gaps { before, after, floor, .. }| [before, after, floor]);
         let cells = gaps.map(|gap| value(gap).map_or_else(String::new, percent));
         std::iter::once(name.to_owned()).chain(cells).collect()
     };

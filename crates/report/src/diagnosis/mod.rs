@@ -168,7 +168,7 @@ impl DiagnosisPage<'_> {
 
     /// What is left of held-out logs before, after and of noise, beside that of other joints.
     fn bars(&self, value: &dyn Fn(&Gap) -> Option<f64>) -> Cell {
-        let Gaps { before, after, floor } = &self.found.held_out;
+        let Gaps { before, after, floor, .. } = &self.found.held_out;
         let sizes = [before, after, floor].map(|gap| value(gap).unwrap_or(0.0));
         let of_joints = before.per_joint.iter().chain(&after.per_joint).flatten().copied();
         Cell::bars(&sizes, of_joints.fold(before.all, f64::max), "")

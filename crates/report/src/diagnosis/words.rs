@@ -98,7 +98,7 @@ pub fn verdict_paragraph(found: &Diagnosis, candidates: &[Candidate]) -> String 
 
 /// The gap before and after, and what speaks for the verdict.
 pub(super) fn reasons(found: &Diagnosis) -> String {
-    let Gaps { before, after, floor } = &found.held_out;
+    let Gaps { before, after, floor, .. } = &found.held_out;
     let mut text = format!(
         "On held-out logs the torque mismatch was {}, with what was found it is {}, and noise \
          alone makes {}",
@@ -108,7 +108,7 @@ pub(super) fn reasons(found: &Diagnosis) -> String {
     );
     if let Some(share) = found.share_closed().filter(|_| !found.effects.is_empty()) {
         let share = if share > 0.0 { percent(share) } else { "nothing".to_owned() };
-        text += &format!(": {share} of what can be explained is closed");
+        text += &format!(": {share} of what can be explained is closed, beside velocity reversals");
     }
     text.push('.');
     text += &looks_like(found).map_or_else(String::new, |sentence| format!(" {sentence}"));
@@ -162,7 +162,7 @@ mod tests {
     fn gaps(after: f64, floor: f64) -> Gaps {
         let [before, after, floor] =
             [after, after, floor].map(|all| Gap { all, per_joint: vec![Some(all)] });
-        Gaps { before, after, floor }
+        Gaps { before, after, floor, closed: None }
     }
 
     #[test]

@@ -41,6 +41,8 @@ pub(super) struct Weighing<'a> {
     pub(super) base: Base,
     /// The columns of what the model itself is not sure of.
     own: Vec<Spectrum>,
+    /// By which time torque and motion are taken to be apart, in its deviations.
+    time: f64,
     /// Columns of accelerations count below this frequency \[Hz\].
     pub(super) driven_hz: f64,
 }
@@ -48,21 +50,18 @@ pub(super) struct Weighing<'a> {
 impl<'a> Weighing<'a> {
     /// Sets of logs with the torques of the model's own numbers at z, and the effects that it has.
     pub(super) fn new(sets: Vec<&'a Data<'a>>, effects: Effects<'a>, z: &[f64]) -> Self {
-        // What is too small for a name is nowhere known.
-        let mut known = z.to_vec();
-        let nominal = sets[0].nominal;
-        known[nominal.uncertain.len()..nominal.place_of_spring(0)].fill(0.0);
         let cutoff_hz = sets[0].signals.first().map_or(0.0, |signals| signals.torque_hz);
         let spectra = Spectra::new(&sets, cutoff_hz);
         let logs = sets.iter().flat_map(|data| &data.signals);
         let driven_hz = logs.map(Signals::driven_hz).fold(0.0, f64::max);
         let torques = sets.iter().map(|data| data.model_torques(z)).collect();
-        let left: Vec<Vec<f64>> = sets.iter().map(|data| data.residual_of(&known)).collect();
+        let left: Vec<Vec<f64>> = sets.iter().map(|data| data.residual_of(z)).collect();
         let rows: Vec<&[f64]> = left.iter().map(Vec::as_slice).collect();
         let mut residual = spectra.of_rows(&sets, &rows, f64::INFINITY);
         let mut weighing = Self {
             base: Base::new(spectra.layout.clone(), residual.clone(), &[]),
             own: Vec::new(),
+            time: z[sets[0].nominal.uncertain.len()],
             sets,
             candidates: effects.candidates,
             given: effects.taken,
@@ -72,7 +71,7 @@ impl<'a> Weighing<'a> {
         };
         let mut own = weighing.own();
         // What z does is known at all frequencies, and how much of it up to some.
-        for (column, factor) in own.iter().zip(&known) {
+        for (column, factor) in own.iter().zip(z) {
             add(&mut residual, column, *factor);
         }
         for taken in effects.taken {
@@ -94,38 +93,39 @@ impl<'a> Weighing<'a> {
     pub(super) fn base_beside(&self, parts: &[Part]) -> Base {
         let nominal = self.sets[0].nominal;
         let time = nominal.uncertain.len();
+        let (mut own, mut data) = (self.own.clone(), self.base.data.clone());
+        for part in parts {
+            let law = &self.candidates[part.placed.candidate].law;
+            if let Some((OnlyOne::Lateness, joint)) = law.only_one_of() {
+                let column = std::mem::take(&mut own[time][joint.0]);
+                let whole = self.column(time, f64::INFINITY).swap_remove(joint.0);
+                let unseen =
+                    whole.iter().zip(&column).map(|(whole, own)| self.time * (whole - own));
+                data[joint.0].iter_mut().zip(unseen).for_each(|(row, unseen)| *row += unseen);
+            }
+        }
         let spans: Vec<Span> = parts.iter().map(|part| Span::of(&self.spectra, [part])).collect();
-        let mut own = self.own.clone();
-        for column in &mut own[time..nominal.place_of_spring(0)] {
+        for column in &mut own[time + 1..nominal.place_of_spring(0)] {
             let stacked = self.spectra.stacked(column);
             let little = policy::SAME * stacked.norm();
             if spans.iter().any(|span| span.outside(&stacked).norm() < little) {
                 column.clear();
             }
         }
-        for part in parts {
-            let law = &self.candidates[part.placed.candidate].law;
-            if let Some((OnlyOne::Lateness, joint)) = law.only_one_of() {
-                own[time].get_mut(joint.0).into_iter().for_each(Vec::clear);
-            }
-        }
-        Base::new(self.spectra.layout.clone(), self.base.data.clone(), &own)
+        Base::new(self.spectra.layout.clone(), data, &own)
     }
 
     /// The columns of the model's own numbers, and of what is between them and the logs.
     fn own(&self) -> Vec<Spectrum> {
         let nominal = self.sets[0].nominal;
-        let count = self.sets[0].columns.len();
-        let of = |place: usize| {
-            let rows: Vec<&[f64]> =
-                self.sets.iter().map(|data| data.columns[place].as_slice()).collect();
-            self.spectra.of_rows(
-                &self.sets,
-                &rows,
-                self.up_to(follows_accelerations(nominal, place)),
-            )
-        };
-        (0..count).map(of).collect()
+        let up_to = |place: usize| self.up_to(follows_accelerations(nominal, place));
+        (0..self.sets[0].columns.len()).map(|place| self.column(place, up_to(place))).collect()
+    }
+
+    /// One of them, up to a frequency.
+    fn column(&self, place: usize, up_to_hz: f64) -> Spectrum {
+        let rows = self.sets.iter().map(|data| data.columns[place].as_slice());
+        self.spectra.of_rows(&self.sets, &rows.collect::<Vec<_>>(), up_to_hz)
     }
 
     /// What an effect does to all sets.

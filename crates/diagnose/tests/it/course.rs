@@ -126,6 +126,35 @@ fn what_held_out_logs_have_otherwise_is_no_law() {
     assert_eq!(found.verdict, Verdict::Unexplained);
 }
 
+/// The mean of so many samples of noise is as sure as that: an offset is no surer, and no less for
+/// another one beside it that is too small for a name.
+#[test]
+fn an_offset_is_as_sure_as_its_logs() {
+    let (found, names) = with(&mut |_, _| 0.1);
+    assert_eq!(names, ["torque_offset"], "{:?}", found.reasons);
+    let own = &found.effects[0].parameters[0];
+    let expected = 0.02 / 7500.0_f64.sqrt();
+    assert!((0.5..2.5).contains(&(own.std / expected)), "{} {expected}", own.std);
+    assert!((own.value - 0.1).abs() < 4.0 * own.std, "{} {}", own.value, own.std);
+}
+
+/// A force that no sensor makes, however even its spectrum is, leaves open whether a spring is one.
+#[test]
+fn a_law_is_held_against_all_that_is_no_noise() {
+    for (force, is_named) in [(0.02, true), (0.5, false)] {
+        let (mut random, mut smooth) = (Random::new(9), [0.0; 2]);
+        let (found, names) = with(&mut |_, [q, ..]| {
+            let share = STEP_S * TAU * 20.0;
+            smooth[0] += share * (3.0 * random.normal() - smooth[0]);
+            smooth[1] += share * (smooth[0] - smooth[1]);
+            4.0 * q + force * smooth[1]
+        });
+        let has = found.effects.iter().any(|one| one.size > 0.1);
+        assert!(has, "{:?}", found.reasons);
+        assert_eq!(names == ["spring"], is_named, "{names:?} {:?}", found.reasons);
+    }
+}
+
 /// What a log says of Coulomb friction through an encoder of so large steps, beside a force below
 /// 3 Hz that no channel records: the names, and what is left over what friction does.
 fn friction(size: f64, step: f64, force: f64) -> (Vec<String>, f64) {

@@ -100,6 +100,16 @@ fn a_delay_of_the_drive_is_one_of_the_log_that_is_ahead() {
     assert!((value + 0.008).abs() < 3.0 * std && std < 1e-3, "{value} +- {std}");
 }
 
+/// Friction turns around late where a drive sticks: that says nothing of how late its drive is.
+#[test]
+fn a_delay_has_no_part_in_the_time_between_channels() {
+    let (names, value) = found(0.0, 0.0025);
+    assert_eq!(names, ["torque_delay"]);
+    let [value, std] = value.expect("one is found");
+    let off = (value + 0.0025).abs();
+    assert!(off < 4.0 * std && off < 1e-4, "{value} +- {std}");
+}
+
 #[test]
 fn a_drive_that_is_not_late_lacks_nothing() {
     assert_eq!(found(0.0, 0.0), (Vec::new(), None));

@@ -159,7 +159,7 @@ fn found_beside(
         eprintln!("{} {step:?}", candidates[step.added].name());
     }
     let names = found.effects.iter().map(|one| candidates[one.candidate].name()).collect();
-    let Gaps { before, after, floor } = found.held_out;
+    let Gaps { before, after, floor, .. } = found.held_out;
     let at = |gap: &Gap| gap.per_joint[joint].expect("measured");
     (names, share_closed(at(&before), at(&after), at(&floor)))
 }

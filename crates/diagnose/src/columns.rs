@@ -11,7 +11,7 @@ use denavit_measure::condition::Conditioned;
 
 /// The columns that are surely misread; none where the residual is small at every joint.
 pub(super) fn misread(data: &Data<'_>, residual: &[f64]) -> Vec<MisreadColumns> {
-    let gap = Gap::new(data, residual);
+    let gap = Gap::new(data, residual, &|_| 1.0);
     if gap.per_joint.iter().flatten().all(|share| *share < NOTHING_LIKE) {
         return Vec::new();
     }

@@ -24,13 +24,7 @@ impl Search<'_> {
             column.iter_mut().flatten().for_each(|row| *row *= policy::CHANGE);
             column
         };
-        let changing = Terms {
-            columns: columns.into_iter().map(scaled).collect(),
-            lowest: vec![f64::NEG_INFINITY; count],
-            is_curved: vec![false; count],
-            believed: vec![0.0; count],
-            ..Terms::default()
-        };
+        let changing = Terms::free(columns.into_iter().map(scaled).collect());
         let with = |parts: Vec<Part>| self.weighed(parts, Some(found), policy::ROUNDS[1]);
         let own = Part { terms: changing, ..found.parts[place].clone() };
         let constant = with(found.parts.clone());

@@ -12,7 +12,7 @@ use super::elastic::Spring;
 use super::error::{Cause, Error};
 use super::excitation::{Visible, visible};
 use super::floor::{NoiseFloor, floors};
-use super::gap::{Gap, Known};
+use super::gap::{Gap, Weight, share_closed};
 use super::leftover::{Leftover, leftovers};
 use super::nominal::Nominal;
 use super::regime::{Where, where_left};
@@ -74,12 +74,13 @@ pub struct Gaps {
 
 impl Gaps {
     fn new(data: &Data<'_>, floors: &[NoiseFloor], before: &[f64], after: &[f64]) -> Self {
-        Self {
-            before: Gap::new(data, before),
-            after: Gap::new(data, after),
-            floor: Gap::of_floor(data, floors),
-            closed: Known::new(data, floors).share_closed([before, after]),
-        }
+        let gaps = |weight: Weight<'_>| {
+            let floor = Gap::of_floor(data, floors, weight);
+            [Gap::new(data, before, weight), Gap::new(data, after, weight), floor]
+        };
+        let known = gaps(&|row| data.weights[row]).map(|gap| gap.all);
+        let [before, after, floor] = gaps(&|_| 1.0);
+        Self { before, after, floor, closed: share_closed(known[0], known[1], known[2]) }
     }
 }
 
@@ -207,7 +208,7 @@ fn searched<'s>(
 ) -> (Vec<f64>, Search<'s>, Found) {
     let Setting { data, floors, .. } = setting;
     let both = [(data.train, floors.train), (data.held_out, floors.held_out)];
-    let [a, b] = both.map(|(data, floors)| Gap::of_floor(data, floors).per_joint);
+    let [a, b] = both.map(|(data, floors)| Gap::of_floor(data, floors, &|_| 1.0).per_joint);
     let floor = a.iter().zip(&b).map(|(a, b)| a.unwrap_or(0.0).max(b.unwrap_or(0.0)));
     let floor: Vec<f64> = floor.collect();
     let sets = Vec::from(data.into_array());

@@ -4,7 +4,7 @@
 use super::candidate::Candidate;
 use super::error::Error;
 use super::experiment::{Ambiguity, Experiment};
-use super::gap::Known;
+use super::gap::Gap;
 use super::given::is_driven;
 use super::hypothesis::Hypothesis;
 use super::law_curve::LawCurve;
@@ -121,9 +121,12 @@ pub(super) fn found_effects(
     before: &State,
     after: &State,
 ) -> Vec<FoundEffect> {
-    let known = Known::new(setting.data.held_out, setting.floors.held_out);
-    let gap = |state: &State| known.gap(&state.residual.held_out);
-    let whole = known.closable([before, after].map(|one| one.residual.held_out.as_slice()));
+    let held_out = setting.data.held_out;
+    let known = |row: usize| held_out.weights[row];
+    let gap = |state: &State| Gap::new(held_out, &state.residual.held_out, &known).all;
+    let floor = Gap::of_floor(held_out, setting.floors.held_out, &known).all;
+    // Where all was below the floor already, of what the effects closed.
+    let whole = (gap(before) - floor).max(gap(before) - gap(after)).max(f64::MIN_POSITIVE);
     let given = setting.given.len();
     let all = &found.after;
     let judging = setting.judging(&before.z);

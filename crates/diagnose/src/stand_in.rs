@@ -79,14 +79,7 @@ impl Weighing<'_> {
             let factor = if share > 0.0 { policy::SIZE / share } else { 0.0 };
             column.iter_mut().flatten().for_each(|row| *row *= factor);
         }
-        let count = columns.len();
-        Terms {
-            columns,
-            lowest: vec![f64::NEG_INFINITY; count],
-            is_curved: vec![false; count],
-            believed: vec![0.0; count],
-            ..Terms::default()
-        }
+        Terms::free(columns)
     }
 }
 

@@ -102,13 +102,10 @@ fn is_law(
     };
     let Diagnosis { train, held_out, leftovers, .. } = diagnosis;
     let slow: Vec<f64> = leftovers.iter().map(|left| left.share).collect();
+    let is_judged = || one.judged <= policy::WORTH || stands(&open[1], one.judged, held_out);
     let stands = match setting.candidates[one.candidate].is_standard() {
-        // every drive has it, whatever else there is
-        true => stands(&slow, one.size, train),
-        false => {
-            let acts = one.judged > policy::WORTH;
-            stands(&open[0], one.size, train) && (!acts || stands(&open[1], one.judged, held_out))
-        }
+        true => stands(&slow, one.size, train), // every drive has it, whatever else there is
+        false => stands(&open[0], one.size, train) && is_judged(),
     };
     stands && !changes && one.stands_for.is_none()
 }

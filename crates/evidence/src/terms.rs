@@ -22,6 +22,13 @@ pub struct Terms {
 }
 
 impl Terms {
+    /// Columns whose factors may be anything.
+    pub fn free(columns: Vec<Spectrum>) -> Self {
+        let count = columns.len();
+        let (lowest, believed) = (vec![f64::NEG_INFINITY; count], vec![0.0; count]);
+        Self { columns, lowest, is_curved: vec![false; count], believed, ..Self::default() }
+    }
+
     /// Number of factors.
     pub fn len(&self) -> usize {
         self.columns.len()

@@ -84,38 +84,29 @@ impl Ours {
             goes_to: Target::Time,
             is_needed: true,
         }];
+        let column = |[of, kind, part]: [&str; 3], subject: &str, goes_to: Target| Self {
+            name: format!("{of}_{subject}{part}"),
+            pattern: format!("{of}_{{{kind}}}{part}"),
+            subject: subject.to_owned(),
+            is_needed: matches!(goes_to, Target::Joint(_, 0)),
+            goes_to,
+        };
         for (joint, described) in robot.joints.iter().enumerate() {
             let signals = SIGNALS.len() - usize::from(!described.is_elastic);
             for (signal, prefix) in SIGNALS[..signals].iter().enumerate() {
-                all.push(Self {
-                    name: format!("{prefix}_{}", described.name),
-                    pattern: format!("{prefix}_{{joint}}"),
-                    subject: described.name.clone(),
-                    goes_to: Target::Joint(joint, signal),
-                    is_needed: signal == 0,
-                });
+                let to = Target::Joint(joint, signal);
+                all.push(column([*prefix, "joint", ""], &described.name, to));
             }
         }
         for (contact, name) in robot.contacts.iter().enumerate() {
-            for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
-                all.push(Self {
-                    name: format!("f_{name}_{letter}"),
-                    pattern: format!("f_{{contact}}_{letter}"),
-                    subject: name.clone(),
-                    goes_to: Target::Contact(contact, axis),
-                    is_needed: false,
-                });
+            for (axis, part) in ["_x", "_y", "_z"].into_iter().enumerate() {
+                all.push(column(["f", "contact", part], name, Target::Contact(contact, axis)));
             }
         }
         for (link, name) in links.iter().enumerate() {
             for (part, letters) in WRENCH.into_iter().enumerate() {
-                all.push(Self {
-                    name: format!("w_{name}_{letters}"),
-                    pattern: format!("w_{{link}}_{letters}"),
-                    subject: name.clone(),
-                    goes_to: Target::Link(link, part),
-                    is_needed: false,
-                });
+                let part_of = format!("_{letters}");
+                all.push(column(["w", "link", part_of.as_str()], name, Target::Link(link, part)));
             }
         }
         all

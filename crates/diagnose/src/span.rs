@@ -16,7 +16,7 @@ impl Span {
             .into_iter()
             .flat_map(all)
             .map(|spectrum| spectra.stacked(spectrum))
-            .filter(|column| column.norm() > 0.0)
+            .filter(|column| column.norm() > 0.0 && column.norm().is_finite())
             .map(|column| column.normalize())
             .collect();
         let base = (!columns.is_empty()).then(|| {

@@ -96,7 +96,9 @@ impl<'a> Weighing<'a> {
         let (mut own, mut data) = (self.own.clone(), self.base.data.clone());
         for part in parts {
             let law = &self.candidates[part.placed.candidate].law;
-            if let Some((OnlyOne::Lateness, joint)) = law.only_one_of() {
+            // a position that is late counts as far as time does, and has no more of it
+            let is_moved = !law.follows_accelerations();
+            if let Some((OnlyOne::Lateness, joint)) = law.only_one_of().filter(|_| is_moved) {
                 let column = std::mem::take(&mut own[time][joint.0]);
                 let whole = self.column(time, f64::INFINITY).swap_remove(joint.0);
                 let unseen =

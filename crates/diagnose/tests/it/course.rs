@@ -155,6 +155,16 @@ fn a_law_is_held_against_all_that_is_no_noise() {
     }
 }
 
+/// A held-out log whose torque is 0 throughout judges nothing, and breaks nothing.
+#[test]
+fn a_held_out_torque_of_nothing_is_no_panic() {
+    let made = log(&motion(0.0), &|at| MASS * at[2] + 4.0 * at[0], 1, 0.02);
+    let nothing = log(&motion(0.8), &|_| 0.0, 2, 0.0);
+    let (found, _) = diagnosed(SLED, [made, nothing]);
+    let is_sure = matches!(found.verdict, Verdict::Explained | Verdict::NothingMissing);
+    assert!(!is_sure, "{:?} {:?}", found.verdict, found.reasons);
+}
+
 /// What a log says of Coulomb friction through an encoder of so large steps, beside a force below
 /// 3 Hz that no channel records: the names, and what is left over what friction does.
 fn friction(size: f64, step: f64, force: f64) -> (Vec<String>, f64) {

@@ -163,11 +163,13 @@ pub fn diagnose(
     let most = if misread.is_empty() { request.most_effects } else { 0 };
     let (z, mut search, mut found) = searched(&setting, most, watch);
     let before = setting.state(&found.before.parts, &z);
+    let judging = setting.judging(&before.z);
     // What does not help logs that its values were not fitted to is not told.
     let (after, by_all, mut effects) = loop {
         let after = setting.state(&found.after.parts, &z);
-        let by_all = search.named(&found.after);
-        let effects = found_effects(&setting, &search, (&found, &by_all), &before, &after);
+        let by_all = search.without_twins(&found.after);
+        let of = (&found, &by_all);
+        let effects = found_effects(&setting, &search, &judging, of, [&before, &after]);
         let Some(place) = idle(&effects, setting.candidates) else {
             break (after, by_all, effects);
         };
@@ -182,7 +184,6 @@ pub fn diagnose(
     let states = [&before, &after];
     let all_left = leftovers(&search.weighing.spectra, &found.after.weighed.variances);
     search.tell_stand_ins(&found.after, &all_left, &mut effects);
-    let judging = setting.judging(&before.z);
     let judged = setting.predicted(&judging, &after, &by_all);
     let open = [(&search.weighing, &found.after), (&judging, &judged)]
         .map(|(weighing, of)| weighing.open(of, &search.floor));

@@ -12,7 +12,7 @@ use super::rounds::Found;
 use super::search::Search;
 use super::signals::Filters;
 use super::state::{MOST_Z, Setting, State};
-use super::weighing::Placed;
+use super::weighing::{Placed, Weighing};
 use denavit_codegen::alias::{ExactAliases, Named};
 use denavit_codegen::model::Robot;
 use denavit_evidence::policy;
@@ -112,14 +112,14 @@ pub struct GivenEffect {
     pub parameters: Vec<EffectValue>,
 }
 
-/// The effects of a state, each with its share, its errors and what would do as well; with their
-/// values by all logs.
+/// The effects of the state after, each with its share, errors and rivals, from that before, what
+/// all logs say of them, and held-out logs alone.
 pub(super) fn found_effects(
     setting: &Setting<'_>,
     search: &Search<'_>,
+    judging: &Weighing<'_>,
     (found, by_all): (&Found, &Hypothesis),
-    before: &State,
-    after: &State,
+    [before, after]: [&State; 2],
 ) -> Vec<FoundEffect> {
     let held_out = setting.data.held_out;
     let known = |row: usize| held_out.weights[row];
@@ -129,8 +129,7 @@ pub(super) fn found_effects(
     let whole = (gap(before) - floor).max(gap(before) - gap(after)).max(f64::MIN_POSITIVE);
     let given = setting.given.len();
     let all = &found.after;
-    let judging = setting.judging(&before.z);
-    let predicted = setting.predicted(&judging, after, by_all).posterior;
+    let predicted = setting.predicted(judging, after, by_all).posterior;
     let of = |place: usize| {
         let mut parts = all.parts.clone();
         parts.remove(place);
@@ -145,7 +144,7 @@ pub(super) fn found_effects(
             trained: search.weighing.size(taken),
             judged: judging.size(taken),
             share: (gap(&reopened) - gap(after)) / whole,
-            log_predicted: predicted - setting.predicted(&judging, &reopened, &without).posterior,
+            log_predicted: predicted - setting.predicted(judging, &reopened, &without).posterior,
             change_in_time: search.change_in_time(all, place),
             stands_for: None,
             is_named: true,

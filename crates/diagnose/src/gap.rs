@@ -8,8 +8,8 @@ pub(super) type Weight<'w> = &'w dyn Fn(usize) -> f64;
 
 /// gap = sqrt(mean over joints and springs of (rms of what is left / rms of the torque)^2).
 ///
-/// Rows count alike, or for what is known of them: what friction does while it turns around or
-/// rests no model tells.
+/// Rows count alike, or for what is known of them: no model tells what friction is at velocity
+/// reversals and rests.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gap {
     /// Over all joints.

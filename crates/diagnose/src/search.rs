@@ -283,9 +283,9 @@ impl<'a> Search<'a> {
         self.linearised(first, &|_| true, policy::ROUNDS[1])
     }
 
-    /// What was found, where nothing is beside it that has its name.
-    pub(super) fn named(&mut self, found: &Hypothesis) -> Hypothesis {
-        let named = self.weighing.base_beside(&found.parts);
+    /// What was found, weighed without what does the same beside it.
+    pub(super) fn without_twins(&mut self, found: &Hypothesis) -> Hypothesis {
+        let named = self.weighing.base_without_twins(&found.parts);
         let base = std::mem::replace(&mut self.weighing.base, named);
         let alone = self.settled(found.parts.clone(), Some(found));
         self.weighing.base = base;

@@ -87,16 +87,16 @@ impl<'a> Weighing<'a> {
         Self { own, ..weighing }
     }
 
-    /// The base where what is too small for a name has the name of effects that do the same, and
-    /// how late a joint is that of a law of it: there are no two of them, of which none could say
-    /// how large each is.
-    pub(super) fn base_beside(&self, parts: &[Part]) -> Base {
+    /// The base without what is too small for a name where a part does the same, and without the
+    /// time between channels where a part is the delay of that joint: of two that do the same
+    /// nobody could say how large each is.
+    pub(super) fn base_without_twins(&self, parts: &[Part]) -> Base {
         let nominal = self.sets[0].nominal;
         let time = nominal.uncertain.len();
         let (mut own, mut data) = (self.own.clone(), self.base.data.clone());
         for part in parts {
             let law = &self.candidates[part.placed.candidate].law;
-            // a position that is late counts as far as time does, and has no more of it
+            // a late position and a lag by the model are cut where time is, and leave it as it is
             let is_moved = !law.follows_accelerations();
             if let Some((OnlyOne::Lateness, joint)) = law.only_one_of().filter(|_| is_moved) {
                 let column = std::mem::take(&mut own[time][joint.0]);

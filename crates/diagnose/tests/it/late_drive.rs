@@ -100,7 +100,7 @@ fn a_delay_of_the_drive_is_one_of_the_log_that_is_ahead() {
     assert!((value + 0.008).abs() < 3.0 * std && std < 1e-3, "{value} +- {std}");
 }
 
-/// Friction turns around late where a drive sticks: that says nothing of how late its drive is.
+/// Friction changes its side late where a drive sticks. That says nothing of how late its drive is.
 #[test]
 fn a_delay_has_no_part_in_the_time_between_channels() {
     let (names, value) = found(0.0, 0.0025);

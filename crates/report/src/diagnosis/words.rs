@@ -108,7 +108,9 @@ pub(super) fn reasons(found: &Diagnosis) -> String {
     );
     if let Some(share) = found.share_closed().filter(|_| !found.effects.is_empty()) {
         let share = if share > 0.0 { percent(share) } else { "nothing".to_owned() };
-        text += &format!(": {share} of what can be explained is closed, beside velocity reversals");
+        text += &format!(
+            ": {share} of what can be explained is closed, velocity reversals and rests left out"
+        );
     }
     text.push('.');
     text += &looks_like(found).map_or_else(String::new, |sentence| format!(" {sentence}"));

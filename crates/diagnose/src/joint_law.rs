@@ -24,7 +24,7 @@ enum Acts {
     Followed,
     /// It is a transmission with play (`drive_law.rs`).
     Play,
-    /// It is a transmission that is a spring and a damper (`elastic_law.rs`).
+    /// The same without.
     Elastic,
     /// It stands between a position or velocity and its log (`reading_law.rs`).
     Reading,
@@ -191,8 +191,7 @@ impl JointLaw {
                 self.undelayed(motion, values).or_else(|| Some(self.added(motion, values)))
             }
             (Acts::Followed, _) => Some(self.followed(motion, values)),
-            (Acts::Play, _) => self.through_play(motion, values, asked),
-            (Acts::Elastic, _) => self.through_spring(motion, values, asked),
+            (Acts::Play | Acts::Elastic, _) => self.through(motion, values, asked),
             (Acts::Reading, _) => Some(self.read(motion, values)),
             (Acts::Gap | Acts::Sprung, Asked::Gradient) => self.behind(motion, values),
             (Acts::Gap | Acts::Sprung, Asked::Torque) => self.behind_torque(motion, values),
@@ -217,9 +216,9 @@ impl Law for JointLaw {
     fn follows_accelerations(&self) -> bool {
         match self.acts {
             Acts::Torque => self.law.follows_accelerations(),
-            // A joint on a spring is behind in proportion to its load, and to the noise of that.
-            // How one falls through its gap is integrated; a torque that is moved was measured.
-            acts => matches!(acts, Acts::Play | Acts::Reading | Acts::Sprung),
+            // What a spring holds is ahead or behind in proportion to a load, and to the noise of
+            // that. How it falls through a gap is not; a torque that is moved was measured.
+            acts => matches!(acts, Acts::Elastic | Acts::Reading | Acts::Sprung),
         }
     }
 

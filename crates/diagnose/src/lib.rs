@@ -19,7 +19,6 @@ mod diagnosis;
 mod drive_law;
 mod effects_found;
 mod elastic;
-mod elastic_law;
 mod error;
 mod exchange;
 mod excitation;

@@ -30,20 +30,10 @@ pub(crate) mod data {
 /// `drive_law.rs`: What is between a drive, whose torque is logged, and its joint, whose position
 /// is.
 pub(crate) mod drive_law {
-    /// The share that must be passed on of what a transmission that hardly gives way would: one
-    /// that passes nothing on leaves nothing to compare, which explains nothing. How long drive
-    /// and joint touch says less, since a drive that bounces is pressed for short times, and the
-    /// harder.
-    pub(crate) const LEAST_PASSED: f64 = 0.7;
-
     /// The share of a drive's torque that must be load: what a drive takes for itself a rotor that
-    /// moves otherwise would explain, and noise that it does not pass on.
+    /// moves otherwise would explain, and noise tells the sides of a smaller one.
     pub(crate) const LEAST_LOAD: f64 = 0.2;
-}
 
-/// `elastic_law.rs`: A drive before a spring, whose torque is logged, where the log has the
-/// position of the joint.
-pub(crate) mod elastic_law {
     /// By which share of its size a parameter is moved for a difference: the side of friction
     /// changes in steps.
     pub(crate) const DIFFERENCE: f64 = 0.02;

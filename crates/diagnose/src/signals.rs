@@ -347,6 +347,11 @@ impl Signals {
         policy::DRIVEN_REACH * all.iter().map(of_joint).fold(0.0, f64::max)
     }
 
+    /// How long the filter of positions rings beside an impact \[s\].
+    pub(super) fn ringing_s(&self) -> f64 {
+        Filters::of_torques(self.torque_hz).motion_hz.recip()
+    }
+
     /// The time between rows \[s\].
     pub fn row_step_s(&self) -> f64 {
         self.log_step_s * self.rows.stride as f64

@@ -10,6 +10,7 @@
 
 mod added;
 mod affine;
+mod ahead;
 mod behind;
 mod channel;
 mod program;
@@ -18,6 +19,7 @@ mod states;
 mod transmission;
 
 pub use added::{AddedLaw, ApartEffects, apart};
+pub use ahead::Passing;
 pub use robot::{AddedTorques, RobotEffect};
 pub use transmission::{Drive, GivesWay, Transmitted};
 

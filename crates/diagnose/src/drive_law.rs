@@ -8,9 +8,9 @@
 //! ```
 //!
 //! Nothing is integrated along the log, so an error of the torque where the drive turns around does
-//! not ring on. What bends a spring, or the sides of a play, is the load up to the frequency that
-//! references drive: beyond it, two derivatives are of noise. On which side a play is the whole load
-//! says, since impacts are faster.
+//! not ring on. What bends a spring is the load up to the frequency that references drive: beyond
+//! it, two derivatives are of noise. Which side of a play touches, and how impacts bend it, the
+//! whole load says.
 
 use super::floor::rms;
 use super::joint_law::JointLaw;

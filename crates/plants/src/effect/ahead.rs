@@ -13,10 +13,10 @@
 //! I (q + s)'' = tau - off - fv (q + s)' - fc sgn((q + s)') - c s' + I a,
 //! ```
 //!
-//! with a constant a that brings it where it touches next, so that errors of friction do not add up.
+//! with a constant a that brings it where it touches next, so that errors of friction do not add
+//! up.
 
-use super::Drive;
-use super::GivesWay;
+use super::{Drive, GivesWay};
 
 /// What a drive ahead of its joint goes by, at equal distances.
 #[derive(Clone, Copy, Debug)]
@@ -200,30 +200,65 @@ fn deflections(load: &[f64], stiffness: f64, lag: f64) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// A drive whose joint stands, and whose torque of 1 turns around after 0.2 s: all of it
-    /// passes, but for the time in which it crosses the gap from rest, sqrt(2 gap I).
+    const STEP_S: f64 = 0.001;
+    const INERTIA: f64 = 0.05;
+    const GAP: f64 = 0.02;
+
+    /// Samples in which a drive crosses the gap from rest by a torque of 1: sqrt(2 gap I).
+    fn crosses() -> usize {
+        ((2.0 * GAP * INERTIA).sqrt() / STEP_S).round() as usize
+    }
+
+    /// Where a drive is whose joint stands, and whose torque of 1 turns around after 0.2 s: all of
+    /// it passes, but for the time in which it crosses the gap.
+    fn crossed(drive: Drive) -> Vec<f64> {
+        let tau: Vec<f64> = (0..500).map(|k| if k < 200 { 1.0 } else { -1.0 }).collect();
+        let mut passed = tau.clone();
+        passed[200..200 + crosses()].fill(0.0);
+        // the filter rings before the impact
+        passed[195 + crosses()] = 0.2;
+        ahead(drive, &passed, &tau)
+    }
+
+    fn ahead(drive: Drive, passed: &[f64], tau: &[f64]) -> Vec<f64> {
+        let (qd, passed) = (vec![0.0; tau.len()], [passed, tau]);
+        let passing = Passing { step_s: STEP_S, qd: &qd, tau, passed, ringing_s: 0.01 };
+        let way =
+            GivesWay { swing_s: 0.0, play: GAP, damping: 0.0, drag: 0.0, joint_friction: 0.0 };
+        way.ahead(drive, &passing)
+    }
+
     #[test]
     fn a_drive_is_at_one_side_then_falls_to_the_other() {
-        let (step_s, inertia, gap) = (0.001, 0.05, 0.02_f64);
-        let crosses = ((2.0 * gap * inertia).sqrt() / step_s).round() as usize;
-        let mut passed: Vec<f64> = (0..500).map(|k| if k < 200 { 1.0 } else { -1.0 }).collect();
-        passed[200..200 + crosses].fill(0.0);
-        // the filter rings before the impact
-        passed[200 + crosses - 5] = 0.2;
-        let tau: Vec<f64> = (0..500).map(|k| if k < 200 { 1.0 } else { -1.0 }).collect();
-        let passed = [passed.as_slice(), &tau];
-        let passing = Passing { step_s, qd: &[0.0; 500], tau: &tau, passed, ringing_s: 0.01 };
-        let drive = Drive { inertia, ..Drive::default() };
-        let way =
-            GivesWay { swing_s: 0.0, play: gap, damping: 0.0, drag: 0.0, joint_friction: 0.0 };
-        let found = way.ahead(drive, &passing);
-        let touches = 0.5 * gap + SHORTEST_S * SHORTEST_S / inertia;
+        let found = crossed(Drive { inertia: INERTIA, ..Drive::default() });
+        let touches = 0.5 * GAP + SHORTEST_S * SHORTEST_S / INERTIA;
         assert!((found[100] - touches).abs() < 1e-9 && (found[400] + touches).abs() < 1e-9);
-        for (k, found) in found[200..200 + crosses].iter().enumerate() {
-            let t = step_s * (k + 1) as f64;
-            let exact = touches - 0.5 * t * t / inertia;
+        for (k, found) in found[200..200 + crosses()].iter().enumerate() {
+            let t = STEP_S * (k + 1) as f64;
+            let exact = touches - 0.5 * t * t / INERTIA;
             // a step of time is 0.045 of the gap where it touches
-            assert!((found - exact).abs() < 0.05 * gap, "{t}: {found} is not {exact}");
+            assert!((found - exact).abs() < 0.05 * GAP, "{t}: {found} is not {exact}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_of_a_drive_does_not_move_its_touches() {
+        let right = Drive { inertia: INERTIA, ..Drive::default() };
+        let wrong = Drive { inertia: 1.1 * INERTIA, coulomb: 0.2, offset: 0.1, ..right };
+        let [right, wrong] = [right, wrong].map(crossed);
+        for (k, (right, wrong)) in right.iter().zip(&wrong).enumerate() {
+            assert!((right - wrong).abs() < 0.05 * GAP, "{k}: {right} {wrong}");
+        }
+    }
+
+    #[test]
+    fn a_side_that_pushes_before_and_after_an_impact_pushes_beside_it() {
+        let mut tau = vec![1.0; 200];
+        tau[100] = 10.0;
+        let drive = Drive { inertia: INERTIA, ..Drive::default() };
+        for (k, ahead) in ahead(drive, &tau, &tau).iter().enumerate() {
+            let exact = 0.5 * GAP + tau[k] * SHORTEST_S * SHORTEST_S / INERTIA;
+            assert!((ahead - exact).abs() < 1e-9, "{k}: {ahead} is not {exact}");
         }
     }
 

@@ -10,15 +10,17 @@
 //! Nothing is integrated along the log, so an error of the torque where the drive turns around does
 //! not ring on. What bends a spring is the load up to the frequency that references drive: beyond
 //! it, two derivatives are of noise. Which side of a play touches, and how impacts bend it, the
-//! whole load says.
+//! whole load says. Where noise or friction of the joint, which is unknown while it turns around,
+//! hide that, a rotor is moved along the log instead, by the torque that was measured, and what then
+//! reaches the joint is compared with what it takes.
 
 use super::floor::rms;
-use super::joint_law::JointLaw;
+use super::joint_law::{JointLaw, samples};
 use super::law::{Asked, Motion, Response, differences};
 use super::signals::Signals;
-use crate::policy::drive_law::{DIFFERENCE, LEAST_LOAD};
+use crate::policy::drive_law::{DIFFERENCE, LEAST_LOAD, LEAST_PASSED, OF_NOISE, TOUCHES};
 use denavit_measure::condition::Butterworth;
-use denavit_plants::effect::{Drive, Passing};
+use denavit_plants::effect::{Drive, JointSamples, Passing};
 
 /// Order of one pass of the filter of loads.
 const ORDER: usize = 4;
@@ -33,9 +35,15 @@ impl JointLaw {
         asked: Asked,
     ) -> Option<Response> {
         let (joint, signals, has_play) = (self.joint, motion.signals, self.law.has_play());
-        let is_loaded = rms(&motion.load[joint.0]) >= LEAST_LOAD * rms(&motion.total[joint.0]);
+        let (size, drive) = (rms(&motion.load[joint.0]), motion.drives[joint.0]);
+        let is_loaded = size >= LEAST_LOAD * rms(&motion.total[joint.0]);
+        let way = self.law.gives_way(values)?;
         if signals.motor[joint.0].is_some() || has_play && !is_loaded {
             return None;
+        }
+        let (least, hides) = (TOUCHES * size, way.joint_friction * drive.coulomb);
+        if has_play && hides.max(OF_NOISE * self.noise_of_load(motion)) > least {
+            return self.along_log(motion, values, asked);
         }
         let slow = Butterworth::new(ORDER, signals.driven_hz(), signals.log_step_s);
         let load = |torque: &[f64]| {
@@ -44,7 +52,6 @@ impl JointLaw {
             slow.iter().for_each(|filter| filter.zero_phase(&mut both[1]));
             both
         };
-        let drive = motion.drives[joint.0];
         let friction = signals.qd[joint.0].iter().map(|qd| drive.friction(*qd));
         let loads = [load(&motion.load[joint.0]), load(&friction.collect::<Vec<f64>>())];
         let passing = Passing {
@@ -52,6 +59,7 @@ impl JointLaw {
             qd: &signals.cell_means(&signals.qd[joint.0]),
             tau: signals.measured[joint.0].as_ref()?,
             passed: [&[]; 2],
+            least,
             ringing_s: signals.ringing_s(),
         };
         let of = |values: &[f64]| vec![self.more(signals, drive, (&loads, &passing), values)];
@@ -62,6 +70,28 @@ impl JointLaw {
             Asked::Gradient => differences(of, &torque, values, step),
         };
         Some(Response { equations: vec![joint.0], torque, gradient })
+    }
+
+    /// The deviation of the load by the noise of its own encoder [N m, N].
+    fn noise_of_load(&self, motion: &Motion<'_>) -> f64 {
+        let inertia = rms(motion.load_slopes(self.joint).inertia());
+        inertia * motion.signals.acceleration_noise(self.joint)
+    }
+
+    /// The same by a rotor that the measured torque moves along the log at the full rate. What
+    /// reaches the joint is compared with what reaches it through a transmission that hardly gives
+    /// way; none where nothing is to be compared.
+    fn along_log(&self, motion: &Motion<'_>, values: &[f64], asked: Asked) -> Option<Response> {
+        let measured = motion.signals.measured_within(self.joint)?;
+        let (tau, drive) = (measured.as_slice(), motion.drives[self.joint.0]);
+        let samples = JointSamples { tau, drive, ..samples(motion, self.joint, None) };
+        let through = self.law.through(&samples, values)?;
+        let gradient = match asked {
+            _ if through.share < LEAST_PASSED => return None,
+            Asked::Torque => Vec::new(),
+            Asked::Gradient => self.law.through_gradient(&samples, values, &through),
+        };
+        Some(Response::of(self.joint.0, through.torque, gradient))
     }
 
     /// What a drive takes more than if it moved with its joint, whose load and friction are at the

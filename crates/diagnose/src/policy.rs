@@ -34,6 +34,16 @@ pub(crate) mod drive_law {
     /// moves otherwise would explain, and noise tells the sides of a smaller one.
     pub(crate) const LEAST_LOAD: f64 = 0.2;
 
+    /// The share of the load (root mean square) below which the sides of a play do not touch.
+    pub(crate) const TOUCHES: f64 = 0.05;
+
+    /// Deviations of the load's noise that must be less than that.
+    pub(crate) const OF_NOISE: f64 = 4.0;
+
+    /// The share that must be passed on of what a transmission that hardly gives way would: one
+    /// that passes nothing on leaves nothing to compare, which explains nothing.
+    pub(crate) const LEAST_PASSED: f64 = 0.7;
+
     /// By which share of its size a parameter is moved for a difference: the side of friction
     /// changes in steps.
     pub(crate) const DIFFERENCE: f64 = 0.02;

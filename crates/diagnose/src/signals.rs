@@ -5,7 +5,7 @@
 //! torques of effects. A law with a step at a reversal then has the same edge on both sides of the
 //! equation, which is what tells a step from a slope.
 
-use super::floor::white_noise;
+use super::floor::{rms, white_noise};
 use super::spectra::{cosine_lines, last_driven};
 use super::standstill::{self, Rest};
 use crate::policy::signals::{ENOUGH_ROWS, LEAST_RATE_HZ, LEAST_ROWS, ROWS_PER_PERIOD};
@@ -345,6 +345,14 @@ impl Signals {
         let line_hz = 0.5 / (self.rows() as f64 * self.row_step_s());
         let of_joint = |lines: &Vec<f64>| line_hz * last_driven(lines) as f64;
         policy::DRIVEN_REACH * all.iter().map(of_joint).fold(0.0, f64::max)
+    }
+
+    /// What an encoder's noise is of an acceleration (root mean square) [rad/s^2, m/s^2].
+    pub(super) fn acceleration_noise(&self, joint: JointIndex) -> f64 {
+        let noise = &self.position_noise[joint.0];
+        let inner = STENCIL..noise.len().saturating_sub(STENCIL);
+        let all: Vec<f64> = inner.map(|k| acceleration(noise, k)).collect();
+        rms(&all) / (self.log_step_s * self.log_step_s)
     }
 
     /// How long the filter of positions rings beside an impact \[s\].

@@ -29,15 +29,11 @@ pub struct Passing<'s> {
     pub tau: &'s [f64],
     /// What the joint takes [N m, N]: what is fast, for the sides, and what bends them.
     pub passed: [&'s [f64]; 2],
+    /// The least of it that is told from nothing [N m, N].
+    pub least: f64,
     /// How long the filter of the positions rings beside an impact \[s\].
     pub ringing_s: f64,
 }
-
-/// The share of its mean (root mean square) below which what passes is not told from nothing.
-const TOUCHES: f64 = 0.05;
-
-/// Medians of what is fast of it below which that may be noise: four deviations.
-const OF_NOISE: f64 = 6.0;
 
 /// The share of an impact beside it up to which the filter of the positions may ring.
 const RINGING: f64 = 0.3;
@@ -85,32 +81,17 @@ impl GivesWay {
 }
 
 impl Passing<'_> {
-    /// The least torque that is told from nothing [N m, N].
-    fn least(&self) -> f64 {
-        let [passed, _] = self.passed;
-        let square = passed.iter().map(|torque| torque * torque).sum::<f64>();
-        TOUCHES * (square / passed.len().max(1) as f64).sqrt()
-    }
-
     /// What bends the sides: what is slow, and of the rest what is no noise.
     fn bending(&self) -> Vec<f64> {
-        let [passed, slow] = self.passed;
-        let fast: Vec<f64> = passed.iter().zip(slow).map(|(passed, slow)| passed - slow).collect();
-        let mut sizes: Vec<f64> = fast.iter().map(|fast| fast.abs()).collect();
-        let middle = sizes.len() / 2;
-        let median = match sizes.is_empty() {
-            true => 0.0,
-            false => *sizes.select_nth_unstable_by(middle, f64::total_cmp).1,
-        };
-        let noise = self.least().max(OF_NOISE * median);
-        let all = slow.iter().zip(fast);
-        all.map(|(slow, fast)| slow + fast - fast.clamp(-noise, noise)).collect()
+        let ([passed, slow], least) = (self.passed, self.least);
+        let both = passed.iter().zip(slow).map(|(passed, slow)| (slow, passed - slow));
+        both.map(|(slow, fast)| slow + fast - fast.clamp(-least, least)).collect()
     }
 
     /// The side on which a drive pushes at each sample; 0 where nothing passes: too little, or no
     /// more than an impact nearby makes the filter ring, unless it pushes on before and after.
     fn sides(&self) -> Vec<f64> {
-        let ([passed, _], least) = (self.passed, self.least());
+        let ([passed, _], least) = (self.passed, self.least);
         let reach = (self.ringing_s / self.step_s).round() as usize;
         let side = |(k, torque): (usize, &f64)| {
             let near = &passed[k.saturating_sub(reach)..(k + reach + 1).min(passed.len())];
@@ -222,7 +203,8 @@ mod tests {
 
     fn ahead(drive: Drive, passed: &[f64], tau: &[f64]) -> Vec<f64> {
         let (qd, passed) = (vec![0.0; tau.len()], [passed, tau]);
-        let passing = Passing { step_s: STEP_S, qd: &qd, tau, passed, ringing_s: 0.01 };
+        let (step_s, ringing_s, least) = (STEP_S, 0.01, 0.05);
+        let passing = Passing { step_s, qd: &qd, tau, passed, least, ringing_s };
         let way =
             GivesWay { swing_s: 0.0, play: GAP, damping: 0.0, drag: 0.0, joint_friction: 0.0 };
         way.ahead(drive, &passing)

@@ -11,8 +11,8 @@
 //! not ring on. What bends a spring is the load up to the frequency that references drive: beyond
 //! it, two derivatives are of noise. Which side of a play touches, and how impacts bend it, the
 //! whole load says. Where noise or friction of the joint, which is unknown while it turns around,
-//! hide that, a rotor is moved along the log instead, by the torque that was measured, and what then
-//! reaches the joint is compared with what it takes.
+//! hide that, a rotor is moved along the log instead, by the torque that was measured, and what
+//! then reaches the joint is compared with what it takes.
 
 use super::floor::rms;
 use super::joint_law::{JointLaw, samples};

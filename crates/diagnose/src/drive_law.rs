@@ -19,6 +19,7 @@ use super::joint_law::{JointLaw, samples};
 use super::law::{Asked, Motion, Response, differences};
 use super::signals::Signals;
 use crate::policy::drive_law::{DIFFERENCE, LEAST_LOAD, LEAST_PASSED, OF_NOISE, TOUCHES};
+use crate::policy::known::RINGING;
 use denavit_measure::condition::Butterworth;
 use denavit_plants::effect::{Drive, JointSamples, Passing};
 
@@ -60,6 +61,7 @@ impl JointLaw {
             tau: signals.measured[joint.0].as_ref()?,
             passed: [&[]; 2],
             least,
+            ringing: RINGING,
             ringing_s: signals.ringing_s(),
         };
         let of = |values: &[f64]| vec![self.more(signals, drive, (&loads, &passing), values)];

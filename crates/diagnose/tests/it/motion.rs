@@ -18,17 +18,20 @@ pub(super) const SLED: &str = r#"{
 }"#;
 
 pub(super) fn motion(phase: f64) -> impl Fn(f64) -> [f64; 3] {
-    move |t| {
-        let mut all = [0.0; 3];
-        for (size, periods) in WAVES {
-            let w = TAU * periods / 5.0;
-            let (sine, cosine) = (w * t + periods * phase).sin_cos();
-            all[0] += size * sine;
-            all[1] += size * w * cosine;
-            all[2] -= size * w * w * sine;
-        }
-        all
+    move |t| waves(&WAVES, phase, t)
+}
+
+/// Position, velocity and acceleration of waves of so many periods in five seconds.
+pub(super) fn waves(waves: &[(f64, f64)], phase: f64, t: f64) -> [f64; 3] {
+    let mut all = [0.0; 3];
+    for (size, periods) in waves {
+        let w = TAU * periods / 5.0;
+        let (sine, cosine) = (w * t + periods * phase).sin_cos();
+        all[0] += size * sine;
+        all[1] += size * w * cosine;
+        all[2] -= size * w * w * sine;
     }
+    all
 }
 
 #[test]

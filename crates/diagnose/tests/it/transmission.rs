@@ -1,6 +1,7 @@
 //! A drive whose transmission gives way, where the torque is the drive's, and the position the
 //! joint's or the drive's.
 
+use super::motion::waves;
 use super::one_joint::{STEP_S, diagnosed, log};
 use denavit_measure::log::MeasuredLog;
 use std::f64::consts::TAU;
@@ -96,15 +97,8 @@ const H: f64 = STEP_S / WITHIN as f64;
 
 /// Angle, velocity and acceleration that a drive is to have.
 fn reference(phase: f64, t: f64) -> [f64; 3] {
-    let mut all = [-0.25 * TAU, 0.0, 0.0];
-    for (size, periods) in [(0.5, 2.0), (0.25, 5.0), (0.1, 9.0)] {
-        let w = TAU * periods / 5.0;
-        let (sine, cosine) = (w * t + periods * phase).sin_cos();
-        all[0] += size * sine;
-        all[1] += size * w * cosine;
-        all[2] -= size * w * w * sine;
-    }
-    all
+    let [angle, rate, acceleration] = waves(&[(0.5, 2.0), (0.25, 5.0), (0.1, 9.0)], phase, t);
+    [angle - 0.25 * TAU, rate, acceleration]
 }
 
 /// How far a drive that is ahead is beyond its gap.

@@ -16,6 +16,7 @@
 //! with a constant a that brings it where it touches next, so that errors of friction do not add
 //! up.
 
+use super::transmission::SHORTEST_S;
 use super::{Drive, GivesWay};
 
 /// What a drive ahead of its joint goes by, at equal distances.
@@ -31,15 +32,11 @@ pub struct Passing<'s> {
     pub passed: [&'s [f64]; 2],
     /// The least of it that is told from nothing [N m, N].
     pub least: f64,
-    /// How long the filter of the positions rings beside an impact \[s\].
+    /// The share of an impact that the filter of the positions may ring with beside it.
+    pub ringing: f64,
+    /// How long it does \[s\].
     pub ringing_s: f64,
 }
-
-/// The share of an impact beside it up to which the filter of the positions may ring.
-const RINGING: f64 = 0.3;
-
-/// The swing of sides that hardly give way \[s\]: faster than any filter of logs passes.
-const SHORTEST_S: f64 = 0.002;
 
 /// Steps in time of a drive that is alone, to a sample, and times that its end is looked at.
 const STEPS: usize = 4;
@@ -96,7 +93,7 @@ impl Passing<'_> {
         let side = |(k, torque): (usize, &f64)| {
             let near = &passed[k.saturating_sub(reach)..(k + reach + 1).min(passed.len())];
             let most = near.iter().fold(0.0, |most: f64, torque| most.max(torque.abs()));
-            if torque.abs() > least.max(RINGING * most) { torque.signum() } else { 0.0 }
+            if torque.abs() > least.max(self.ringing * most) { torque.signum() } else { 0.0 }
         };
         let mut sides: Vec<f64> = passed.iter().enumerate().map(side).collect();
         let mut last = 0;
@@ -203,8 +200,9 @@ mod tests {
 
     fn ahead(drive: Drive, passed: &[f64], tau: &[f64]) -> Vec<f64> {
         let (qd, passed) = (vec![0.0; tau.len()], [passed, tau]);
-        let (step_s, ringing_s, least) = (STEP_S, 0.01, 0.05);
-        let passing = Passing { step_s, qd: &qd, tau, passed, least, ringing_s };
+        let (step_s, least) = (STEP_S, 0.05);
+        let (ringing, ringing_s) = (0.3, 0.01);
+        let passing = Passing { step_s, qd: &qd, tau, passed, least, ringing, ringing_s };
         let way =
             GivesWay { swing_s: 0.0, play: GAP, damping: 0.0, drag: 0.0, joint_friction: 0.0 };
         way.ahead(drive, &passing)

@@ -73,7 +73,7 @@ impl Drive {
 pub(super) struct TransmissionLaw(LawProgram);
 
 /// The swing of a transmission that hardly gives way \[s\]: faster than any filter of logs passes.
-const SHORTEST_S: f64 = 0.002;
+pub(super) const SHORTEST_S: f64 = 0.002;
 
 /// Steps to a swing, and most of them between samples.
 const STEPS: f64 = 16.0;

@@ -7,7 +7,6 @@ use denavit_evidence::policy;
 use denavit_measure::JointIndex;
 use denavit_plants::effect::LawParameter;
 use denavit_plants::model_text::NewPlace;
-use std::cmp::Ordering;
 use std::f64::consts::TAU;
 
 /// An effect in one place.
@@ -50,12 +49,8 @@ impl Candidate {
 
     /// Whether it is met more often than another one, or as often with fewer parameters.
     pub(super) fn is_plainer_than(&self, other: &Self) -> bool {
-        let parameters = |of: &Self| of.law.parameters().len();
-        match self.occurrence.cmp(&other.occurrence) {
-            Ordering::Less => true,
-            Ordering::Equal => parameters(self) < parameters(other),
-            Ordering::Greater => false,
-        }
+        let key = |of: &Self| (of.occurrence, of.law.parameters().len());
+        key(self) < key(other)
     }
 
     /// Its place in the file of a model, by the definitions of effects.

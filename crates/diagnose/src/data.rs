@@ -1,7 +1,7 @@
 //! Logs with the nominal model's rows: all that is asked of them, weighted and stacked.
 
 use super::known::weights;
-use super::law::{Law, Motion, Response};
+use super::law::{Motion, Response};
 use super::load_slopes::LoadSlopes;
 use super::nominal::{Nominal, Phi};
 use super::rows::{LogRows, PerJoint, behind_springs, of_axes, torques};
@@ -198,11 +198,6 @@ impl<'a> Data<'a> {
         }
     }
 
-    /// What the rows of a stretch count.
-    pub(super) fn weights_of(&self, stretch: usize) -> Vec<f64> {
-        self.weights[self.stretches[stretch].range()].to_vec()
-    }
-
     /// Number of rows.
     pub(super) fn rows(&self) -> usize {
         self.residual.len()
@@ -222,17 +217,7 @@ impl<'a> Data<'a> {
         self.signals.iter().map(|signals| ModelTorques::new(self.nominal, signals, z)).collect()
     }
 
-    /// What a law does to all logs, in the rows: of the equations that have rows.
-    pub(super) fn response(
-        &self,
-        law: &dyn Law,
-        values: &[f64],
-        torques: &[ModelTorques],
-    ) -> RowResponse {
-        self.in_rows(&|motion| law.response(motion, values), torques)
-    }
-
-    /// The same of what is given for the motion of each log.
+    /// What is given for the motion of each log, in the rows: of the equations that have rows.
     pub(super) fn in_rows(
         &self,
         of: &dyn Fn(Motion<'_>) -> Response,

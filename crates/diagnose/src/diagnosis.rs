@@ -334,10 +334,3 @@ fn filters_of(logs: &[MeasuredLog]) -> Result<Filters, Error> {
     let has_rows = |logs: Vec<Signals>| logs.iter().all(Signals::has_rows_to_spare);
     Ok(if conditioned(logs.to_vec(), wanted).is_ok_and(has_rows) { wanted } else { widest })
 }
-
-impl Diagnosis {
-    /// The share of what could be explained of held-out logs that was explained.
-    pub const fn share_closed(&self) -> Option<f64> {
-        self.held_out.closed
-    }
-}

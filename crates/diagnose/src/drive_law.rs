@@ -39,7 +39,7 @@ impl JointLaw {
         let (size, drive) = (rms(&motion.load[joint.0]), motion.drives[joint.0]);
         let is_loaded = size >= LEAST_LOAD * rms(&motion.total[joint.0]);
         let way = self.law.gives_way(values)?;
-        if signals.motor[joint.0].is_some() || has_play && !is_loaded {
+        if signals.motor[joint.0].is_some() || !is_loaded {
             return None;
         }
         let (least, hides) = (TOUCHES * size, way.joint_friction * drive.coulomb);

@@ -45,6 +45,18 @@ impl Motion<'_> {
         })
     }
 
+    /// What accelerations ask for of all torques, or the rest of them [N m, N].
+    pub(super) fn part(&self, is_asked: bool) -> PerJoint {
+        let of_joint = |joint: usize| {
+            let (inertia, [_, qdd]) =
+                (self.drives[joint].inertia, self.signals.of_drive(JointIndex(joint)));
+            let asked = self.load[joint].iter().zip(qdd).map(|(load, qdd)| load + inertia * qdd);
+            let both = asked.zip(&self.total[joint]);
+            both.map(|(asked, total)| if is_asked { asked } else { total - asked }).collect()
+        };
+        (0..self.drives.len()).map(of_joint).collect()
+    }
+
     /// What bodies ask of all equations more in another motion, whose drives move as in this one
     /// [N m, N].
     pub(super) fn loads_beyond(&self, signals: &Signals) -> PerJoint {
@@ -145,6 +157,12 @@ pub trait Law {
     /// Whether what it adds is made of accelerations, or of torques that answer them: beyond the
     /// frequencies that references drive these have the same noise as what they would explain.
     fn follows_accelerations(&self) -> bool {
+        false
+    }
+
+    /// Whether it is in proportion to all that the model gives its joint: friction is known beyond
+    /// these frequencies as well.
+    fn scales_torque(&self) -> bool {
         false
     }
 

@@ -61,7 +61,8 @@ impl LawCurve {
         let law = setting.candidates[taken.candidate].law.as_ref();
         let mut equations: Vec<Rows> =
             (0..data.nominal.equations()).map(|_| Rows::default()).collect();
-        let response = data.response(law, &taken.values, &state.torques.held_out);
+        let response =
+            data.in_rows(&|motion| law.response(motion, &taken.values), &state.torques.held_out);
         for (stretch, torque) in response.stretches.iter().zip(&response.torque) {
             let signals = &data.signals[stretch.log.0];
             let load = &state.torques.held_out[stretch.log.0].load;

@@ -3,7 +3,7 @@
 use super::hypothesis::{Hypothesis, Part};
 use super::search::{Search, Step};
 use super::state::Effects;
-use super::weighing::{Placed, Weighing};
+use super::weighing::{Placed, Weighing, add};
 use denavit_evidence::policy;
 use std::collections::BTreeSet;
 
@@ -111,12 +111,22 @@ impl Search<'_> {
     }
 
     /// The model's own numbers by what was found, if the logs are more likely where laws are
-    /// evaluated with these: a law of an angle that is off by much turns what the numbers do, too.
+    /// evaluated with these, or the laws do something else there that is worth a name: an angle
+    /// that is off by much turns what the numbers do, and a gain scales it.
     fn moved_numbers(&self, now: &Hypothesis) -> Option<Vec<f64>> {
         let Weighing { sets, candidates, given, .. } = &self.weighing;
         let effects = Effects { candidates, taken: given };
         let z = &now.weighed.own[..sets[0].columns.len()];
         let other = Weighing::new(sets.clone(), effects, z);
+        let is_other = |place: usize| {
+            let taken = now.taken(place, candidates);
+            let mut torque = other.spectrum(&taken).0;
+            add(&mut torque, &self.weighing.spectrum(&taken).0, -1.0);
+            other.spectra.largest_share(&torque) > policy::WORTH
+        };
+        if (0..now.parts.len()).any(is_other) {
+            return Some(z.to_vec());
+        }
         let parts = now.parts.iter().map(|part| other.part(&part.placed)).collect();
         let floor = self.floor.clone();
         let other = Self { weighing: other, screen: Vec::new(), floor, ..*self };

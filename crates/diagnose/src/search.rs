@@ -145,9 +145,16 @@ impl<'a> Search<'a> {
         let is_beside = |&other: &usize| other != place && &self.candidate(than, other).at == at;
         let others = (0..than.parts.len()).filter(is_beside);
         others.for_each(|at| add(&mut all, &than.torque(at), 1.0));
-        let little = policy::SAME * self.weighing.spectra.largest_share(&all);
-        let channels = self.weighing.spectra.torque.len();
-        self.leaves_hardly_more(one, than, place, &|| vec![little; channels])
+        let spectra = &self.weighing.spectra;
+        let little = policy::SAME * spectra.largest_share(&all);
+        // beside a law that leaves nothing but noise, more than that noise is something
+        let at_most = || {
+            let open = self.weighing.open(than, &self.floor).into_iter().enumerate();
+            let open = open.map(|(at, open)| spectra.share(&all, at) == 0.0 || open > policy::LEFT);
+            let left = self.weighing.left(than).into_iter().map(|left| left.min(little));
+            open.zip(left).map(|(is_open, left)| if is_open { little } else { left }).collect()
+        };
+        self.leaves_hardly_more(one, than, place, &at_most)
             || met == Occurrence::Standard && self.is_no_better(one, than, place)
     }
 

@@ -55,7 +55,7 @@ impl Spectra {
         let mut planner = DctPlanner::new();
         let mut torques: Vec<Vec<f64>> = vec![Vec::new(); channels];
         for (set, data) in sets.iter().enumerate() {
-            let weights = (0..data.stretches.len()).map(|place| data.weights_of(place));
+            let weights = data.stretches.iter().map(|one| data.weights[one.range()].to_vec());
             spectra.weights.push(weights.collect());
             let line_hz = |stretch: &Stretch| {
                 0.5 / (stretch.rows as f64 * data.signals[stretch.log.0].row_step_s())

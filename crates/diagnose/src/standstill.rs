@@ -171,11 +171,6 @@ impl Signals {
         alternate(self.drive_mut(joint)[0], &t, &rests);
     }
 
-    /// The rests of a joint's drive.
-    pub(super) fn rests_mut(&mut self, joint: JointIndex) -> &mut [Rest] {
-        &mut self.rests[joint.0]
-    }
-
     /// Takes from a change of a measured torque what friction of the drive balances at rest.
     pub(super) fn unbalanced(&self, joint: JointIndex, change: &mut Response) {
         let Response { torque, gradient, .. } = change;

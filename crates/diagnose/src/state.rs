@@ -5,6 +5,7 @@ use super::candidate::Candidate;
 use super::data::{Data, ModelTorques};
 use super::floor::NoiseFloor;
 use super::hypothesis::{Hypothesis, Part};
+use super::law::Motion;
 use super::search::Search;
 use super::weighing::{Placed, Weighing};
 pub(super) use crate::policy::state::MOST_Z;
@@ -154,7 +155,8 @@ impl Data<'_> {
         let mut residual = self.residual_of(z);
         for Taken { candidate, values } in effects.taken {
             let law = effects.candidates[*candidate].law.as_ref();
-            self.response(law, values, torques).subtract_from(&mut residual);
+            let of = |motion: Motion<'_>| law.response(motion, values);
+            self.in_rows(&of, torques).subtract_from(&mut residual);
         }
         residual
     }

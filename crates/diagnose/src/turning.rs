@@ -34,7 +34,7 @@ pub(super) fn settle(nominal: &Nominal<'_>, signals: &mut Signals, phi: &Phi) {
         };
         let sides: Vec<[f64; 2]> = resting.iter().zip(back.iter().zip(&forth)).map(side).collect();
         let mut first = 0;
-        for (rest, range) in signals.rests_mut(joint).iter_mut().zip(ranges) {
+        for (rest, range) in signals.rests[joint.0].iter_mut().zip(ranges) {
             let last = first + range.len();
             if first < last {
                 rest.settle(&sides[first..last]);

@@ -218,7 +218,7 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
         let why = format!("no motion of held-out logs has {} act", unjudged.join(", "));
         return (Verdict::PartlyExplained, vec![why]);
     }
-    match diagnosis.share_closed() {
+    match diagnosis.held_out.closed {
         Some(closed) if closed < policy::SAME => {
             let closed = percent(closed.max(0.0));
             let why = format!("{closed} of what noise does not explain of held-out logs is closed");

@@ -3,7 +3,7 @@
 use super::candidate::{Candidate, Start, starts};
 use super::data::{Data, ModelTorques, RowResponse};
 use super::hypothesis::Part;
-use super::law::{Law, Motion, OnlyOne};
+use super::law::{Law, Motion, OnlyOne, Response};
 use super::nominal::Nominal;
 use super::signals::Signals;
 use super::span::Span;
@@ -133,14 +133,33 @@ impl<'a> Weighing<'a> {
     /// What an effect does to all sets.
     pub(super) fn responses(&self, taken: &Taken) -> Vec<RowResponse> {
         let law = self.candidates[taken.candidate].law.as_ref();
+        self.in_rows(&|motion| law.response(motion, &taken.values))
+    }
+
+    /// What is given for the motion of each log, in the rows of all sets.
+    fn in_rows(&self, of: &dyn Fn(Motion<'_>) -> Response) -> Vec<RowResponse> {
         let sets = self.sets.iter().zip(&self.torques);
-        sets.map(|(data, torques)| data.response(law, &taken.values, torques)).collect()
+        sets.map(|(data, torques)| data.in_rows(of, torques)).collect()
     }
 
     /// The spectra of an effect's torque and of its gradient.
-    fn spectrum(&self, taken: &Taken) -> (Spectrum, Vec<Spectrum>) {
-        let up_to_hz = self.up_to(self.candidates[taken.candidate].law.follows_accelerations());
-        self.spectra.of_response(&self.sets, &self.responses(taken), up_to_hz)
+    pub(super) fn spectrum(&self, taken: &Taken) -> (Spectrum, Vec<Spectrum>) {
+        let law = self.candidates[taken.candidate].law.as_ref();
+        if !law.scales_torque() {
+            let up_to_hz = self.up_to(law.follows_accelerations());
+            return self.spectra.of_response(&self.sets, &self.responses(taken), up_to_hz);
+        }
+        let [asked, rest] = [true, false].map(|is_asked| {
+            let rows = self.in_rows(&|motion| {
+                let total = motion.part(is_asked);
+                law.response(Motion { total: &total, ..motion }, &taken.values)
+            });
+            self.spectra.of_response(&self.sets, &rows, self.up_to(is_asked))
+        });
+        let (mut torque, mut gradient) = asked;
+        add(&mut torque, &rest.0, 1.0);
+        gradient.iter_mut().zip(&rest.1).for_each(|(column, rest)| add(column, rest, 1.0));
+        (torque, gradient)
     }
 
     /// Up to which frequency columns count \[Hz\].
@@ -198,10 +217,7 @@ impl<'a> Weighing<'a> {
         let gain = |start: &Start| {
             let values: Vec<f64> = start.iter().map(|(value, _)| *value).collect();
             let law = self.candidates[candidate].law.as_ref();
-            let of = |motion: Motion<'_>| law.torque(motion, &values);
-            let sets = self.sets.iter().zip(&self.torques);
-            let rows: Vec<RowResponse> =
-                sets.map(|(data, torques)| data.in_rows(&of, torques)).collect();
+            let rows = self.in_rows(&|motion| law.torque(motion, &values));
             let up_to_hz = self.up_to(law.follows_accelerations());
             let (known, _) = self.spectra.of_response(&self.sets, &rows, up_to_hz);
             let unpredicted = self.unpredicted(law, &values);

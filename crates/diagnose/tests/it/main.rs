@@ -8,6 +8,7 @@ mod late_drive;
 mod laws;
 mod motion;
 mod one_joint;
+mod plainest;
 mod rests;
 mod saturation;
 mod search;

@@ -20,6 +20,8 @@ pub(super) struct ChannelLaw {
     is_timing: bool,
     /// Whether it is nothing but a delay.
     is_delay: bool,
+    /// Whether what is logged is the truth times a constant.
+    is_gain: bool,
     /// Delay, lag, then their derivatives by the parameters.
     timing: LawProgram,
     /// The columns of `slope`.
@@ -43,12 +45,24 @@ impl ChannelLaw {
         let is_delay = is_timing && measured.lag_s == dag.zero();
         let slope = gradient(dag, &[measured.value], &[channel]).concat();
         let columns = columns(dag, &slope);
+        let is_scaled = columns.is_empty() && dag.mul(slope[0], channel) == measured.value;
+        let is_gain = is_scaled && !is_timing && measured.transmission.is_none();
         let inputs = inputs(dag, &columns, &[]);
         let slope = LawProgram::new(dag, &names(effect), inputs, slope)?;
         let Measured { channel, is_inverse, transmission, .. } = *measured;
         let transmission = transmission.map(|one| TransmissionLaw::new(dag, effect, one));
         let transmission = transmission.transpose()?;
-        Ok(Self { channel, is_inverse, is_timing, is_delay, timing, columns, slope, transmission })
+        Ok(Self {
+            channel,
+            is_inverse,
+            is_timing,
+            is_delay,
+            is_gain: is_gain && !is_inverse,
+            timing,
+            columns,
+            slope,
+            transmission,
+        })
     }
 }
 
@@ -198,6 +212,11 @@ impl EffectLaw {
     /// Whether the law is of the time of its channel alone.
     pub fn is_timing(&self) -> bool {
         self.channel.as_ref().is_some_and(|law| law.is_timing)
+    }
+
+    /// Whether what is logged is the truth times a constant.
+    pub fn is_gain(&self) -> bool {
+        self.channel.as_ref().is_some_and(|law| law.is_gain)
     }
 
     /// Whether the truth is what is logged, at another time: a drive that follows its command.

@@ -231,12 +231,13 @@ impl EffectLaw {
         self.channel() == Some(Channel::Position) && (uses_load || self.is_transmission())
     }
 
-    /// Whether the law is made of accelerations, or changes a logged torque in proportion or in
-    /// time, which answers them.
+    /// Whether the law is made of accelerations, or moves a logged torque in time or multiplies it by
+    /// a constant, which answers them. Where the factor changes with position, what it makes of
+    /// their noise is of another frequency than that noise in the residual.
     pub fn follows_accelerations(&self) -> bool {
         let answers = ["qdd", "qdd_2", "tau_load_rate", "tau_load_rate_2"];
         let uses = self.columns.iter().any(|&column| answers.contains(&COLUMNS[column]));
-        uses || self.channel.is_some() && (!self.is_inverse() || self.follows_log())
+        uses || self.is_timing() || self.is_gain()
     }
 
     /// Whether the law is of motion alone, and of no torque.

@@ -229,7 +229,7 @@ pub fn diagnosed_json<'a>(
         noise_floor: found.held_out.floor.all,
         gap: GapJson { train: (&found.train).into(), validate: (&found.held_out).into() },
         simulation_gap: motion(shown),
-        share_closed: found.share_closed(),
+        share_closed: found.held_out.closed,
         driven: [&found.driven[0], &found.driven[1]],
         remarks: remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect(),
         model_file: has_model.then_some(MODEL),

@@ -106,7 +106,7 @@ pub(super) fn reasons(found: &Diagnosis) -> String {
         percent(after.all),
         percent(floor.all)
     );
-    if let Some(share) = found.share_closed().filter(|_| !found.effects.is_empty()) {
+    if let Some(share) = found.held_out.closed.filter(|_| !found.effects.is_empty()) {
         let share = if share > 0.0 { percent(share) } else { "nothing".to_owned() };
         text += &format!(
             ": {share} of what can be explained is closed, velocity reversals and rests left out"

@@ -231,9 +231,9 @@ impl EffectLaw {
         self.channel() == Some(Channel::Position) && (uses_load || self.is_transmission())
     }
 
-    /// Whether the law is made of accelerations, or moves a logged torque in time or multiplies it by
-    /// a constant, which answers them. Where the factor changes with position, what it makes of
-    /// their noise is of another frequency than that noise in the residual.
+    /// Whether the law is made of accelerations, or moves a logged torque in time or multiplies it
+    /// by a constant, which answers them. Where the factor changes with position, their noise has
+    /// another frequency there than in the residual.
     pub fn follows_accelerations(&self) -> bool {
         let answers = ["qdd", "qdd_2", "tau_load_rate", "tau_load_rate_2"];
         let uses = self.columns.iter().any(|&column| answers.contains(&COLUMNS[column]));

@@ -149,6 +149,7 @@ impl<'a> Weighing<'a> {
             let up_to_hz = self.up_to(law.follows_accelerations());
             return self.spectra.of_response(&self.sets, &self.responses(taken), up_to_hz);
         }
+        // in proportion to loads, as far as references drive these, and to friction
         let [asked, rest] = [true, false].map(|is_asked| {
             let rows = self.in_rows(&|motion| {
                 let total = motion.part(is_asked);

@@ -5,7 +5,7 @@ use super::linear::{depends, linear};
 use super::spelling::JointUnit;
 use super::{
     Confusion, Effect, EffectKind, EffectParameter, EffectSite, EffectState, FORMAT, Law, Measured,
-    Occurrence, Transmission,
+    Occurrence, Property, Transmission,
 };
 use crate::expr::{Dag, ExprId, SymbolClass, substitute};
 use crate::model::check::Scope;
@@ -140,6 +140,11 @@ fn note_linear(
     // a state, and what is late, answer to their parameters in a way that no expression says
     let mut hidden: Vec<ExprId> =
         states.iter().flat_map(|state| [state.rate, state.initial]).collect();
+    // torques bend where a joint stands elsewhere, however that place depends on parameters
+    if let Law::Moves(moves) = law {
+        let zeros = moves.iter().filter(|(property, _)| *property == Property::Zero);
+        hidden.extend(zeros.map(|(_, by)| *by));
+    }
     if let Law::Measured(Measured { transmission, delay_s, lag_s, .. }) = law {
         hidden.extend([*delay_s, *lag_s]);
         let of =

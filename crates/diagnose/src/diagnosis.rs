@@ -162,12 +162,12 @@ pub fn diagnose(
     let misread = misread(&data.train, &setting.as_given(&data.train));
     let most = if misread.is_empty() { request.most_effects } else { 0 };
     let (z, mut search, mut found) = searched(&setting, most, watch);
-    let before = setting.state(&found.before.parts, &z);
+    let before = setting.state(&found.before, &z);
     let judging = setting.judging(&before.z);
     // What does not help logs that its values were not fitted to is not told.
     let (after, by_all, mut effects) = loop {
-        let after = setting.state(&found.after.parts, &z);
         let by_all = search.without_twins(&found.after);
+        let after = setting.state(&by_all, &z);
         let of = (&found, &by_all);
         let effects = found_effects(&setting, &search, &judging, of, [&before, &after]);
         let Some(place) = idle(&effects, setting.candidates) else {

@@ -133,9 +133,9 @@ pub(super) fn found_effects(
     let of = |place: usize| {
         let mut parts = all.parts.clone();
         parts.remove(place);
-        let without = search.settled(parts.clone(), Some(all));
+        let without = search.settled(parts, Some(all));
         let taken = &after.taken[given + place];
-        let reopened = setting.state(&parts, &before.z);
+        let reopened = setting.state(&without, &before.z);
         let errors = setting.errors(after, by_all, place);
         FoundEffect {
             candidate: taken.candidate,

@@ -47,13 +47,11 @@ impl Search<'_> {
             } else {
                 let beside = self.glance(&now, &now.parts);
                 let is_other = |candidate| candidate != own.placed.candidate;
-                let of = Some((&beside, &own));
+                let of = Some((&beside, &own, place));
                 all = self.with_one_more(&rest, &others, &is_other, of);
                 all.retain(|one| {
-                    one.posterior <= now.posterior || !self.is_missing_beside(&own, one)
+                    one.posterior <= now.posterior || !self.is_missing_beside(&own, one, place)
                 });
-                // the new one stands last there
-                all = all.into_iter().map(|one| one.with_last_at(place)).collect();
                 let better = self.better(&now, &rest, place, &all).filter(|_| may_exchange);
                 better.map(|one| self.settled(one.parts.clone(), Some(one)))
             };
@@ -76,21 +74,21 @@ impl Search<'_> {
         (now, rivals.into_iter().flatten().collect())
     }
 
-    /// Whether an effect is asked for beside a hypothesis, whose last one stays worth it, and may
-    /// be added to it.
-    fn is_missing_beside(&self, own: &Part, one: &Hypothesis) -> bool {
-        let place = one.parts.len();
-        if place == self.most {
+    /// Whether an effect is asked for beside a hypothesis, whose one in a place stays worth it, and
+    /// may be added to it.
+    fn is_missing_beside(&self, own: &Part, one: &Hypothesis, place: usize) -> bool {
+        let last = one.parts.len();
+        if last == self.most {
             return false;
         }
         let parts = [&one.parts[..], std::slice::from_ref(own)].concat();
         let both = self.weighed(parts, Some(one), policy::ROUNDS[0]);
         let mut others = both.parts.clone();
-        others.remove(place - 1);
+        others.remove(place);
         let without = self.weighed(others, Some(&both), policy::ROUNDS[0]);
         both.posterior - one.posterior > policy::NAMED
-            && self.is_worth(one, &both, place)
-            && self.is_worth(&without, &both, place - 1)
+            && self.is_worth(one, &both, last)
+            && self.is_worth(&without, &both, place)
     }
 
     /// What is better in a place than what is there: of all hypotheses, and the present one, the

@@ -48,16 +48,6 @@ impl Hypothesis {
         names
     }
 
-    /// The same with its last effect in another place among the others.
-    pub(super) fn with_last_at(mut self, place: usize) -> Self {
-        let first = |place: usize| self.parts[..place].iter().map(|part| part.terms.len()).sum();
-        let (to, from): (usize, usize) = (first(place), first(self.parts.len() - 1));
-        let mut order: Vec<usize> = (0..self.weighed.factors.len()).collect();
-        order[to..].rotate_left(from - to);
-        self.parts[place..].rotate_right(1);
-        Self { weighed: self.weighed.reordered(&order), ..self }
-    }
-
     /// The factors of each part.
     fn factors(&self) -> Vec<&[f64]> {
         self.by_parts(&self.weighed.factors)
@@ -85,6 +75,11 @@ impl Hypothesis {
         moved.map(|((value, deviation), factor)| value + deviation * factor).collect()
     }
 
+    /// The effects with values of their parameters that they may have.
+    pub(super) fn all_taken(&self, candidates: &[Candidate]) -> Vec<Taken> {
+        (0..self.parts.len()).map(|place| self.taken(place, candidates)).collect()
+    }
+
     /// An effect with values of its parameters that it may have.
     pub(super) fn taken(&self, place: usize, candidates: &[Candidate]) -> Taken {
         let candidate = self.parts[place].placed.candidate;
@@ -101,45 +96,5 @@ impl Hypothesis {
             deviation * self.weighed.covariance[(at, at)].max(0.0).sqrt()
         };
         self.parts[place].placed.deviations.iter().enumerate().map(of).collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use nalgebra::DMatrix;
-
-    #[test]
-    fn an_effect_takes_what_is_known_of_it_to_another_place() {
-        // parts of one, two and one factors, whose columns are of height 1
-        let part = |candidate: usize, count: usize| {
-            let columns = vec![vec![vec![1.0]]; count];
-            let terms = Terms { known: vec![vec![0.0]], columns, ..Terms::default() };
-            let values = vec![0.0; count];
-            let (center, deviations, log_share) = (values.clone(), vec![1.0; count], 0.0);
-            Part { terms, placed: Placed { candidate, values, center, deviations, log_share } }
-        };
-        let factors = vec![1.0, 2.0, 3.0, 4.0];
-        let weighed = Weighed {
-            log_evidence: 0.0,
-            variances: Vec::new(),
-            own: Vec::new(),
-            step: factors.clone(),
-            covariance: DMatrix::from_fn(
-                4,
-                4,
-                |i, j| if i == j { factors[i].powi(2) } else { 0.0 },
-            ),
-            factors,
-        };
-        let parts = vec![part(7, 1), part(8, 2), part(9, 1)];
-        let before = Hypothesis { parts, weighed, posterior: 0.0 };
-        let after = before.clone().with_last_at(1);
-        assert_eq!(after.candidates(), [7, 9, 8]);
-        for (to, from) in [(0, 0), (1, 2), (2, 1)] {
-            assert_eq!(after.torque(to), before.torque(from));
-            assert_eq!(after.values(to), before.values(from));
-            assert_eq!(after.deviations(to), before.deviations(from));
-        }
     }
 }

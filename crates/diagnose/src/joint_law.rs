@@ -283,6 +283,10 @@ impl Law for RobotLaw {
         self.effect.follows_accelerations()
     }
 
+    fn is_of_motion(&self) -> bool {
+        self.effect.is_of_motion()
+    }
+
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
         let signals = motion.signals;
         let [q, qd, qdd] = [&signals.q, &signals.qd, &signals.qdd]

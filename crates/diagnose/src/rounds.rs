@@ -32,7 +32,7 @@ impl Search<'_> {
     /// Searches which candidates are missing, from what a search before has found. `watch` hears of
     /// what was found so far, and says whether to go on.
     pub(super) fn run(
-        &self,
+        &mut self,
         begun: &[Placed],
         may_move: bool,
         watch: &mut dyn FnMut(&[usize]) -> bool,
@@ -113,10 +113,12 @@ impl Search<'_> {
     /// The model's own numbers by what was found, if the logs are more likely where laws are
     /// evaluated with these, or the laws do something else there that is worth a name: an angle
     /// that is off by much turns what the numbers do, and a gain scales it.
-    fn moved_numbers(&self, now: &Hypothesis) -> Option<Vec<f64>> {
+    fn moved_numbers(&mut self, now: &Hypothesis) -> Option<Vec<f64>> {
+        let taken = now.all_taken(self.weighing.candidates);
+        let beside = self.settled_by(now, self.weighing.base_beside(&taken, &[]));
         let Weighing { sets, candidates, given, .. } = &self.weighing;
         let effects = Effects { candidates, taken: given };
-        let z = &now.weighed.own[..sets[0].columns.len()];
+        let z = &beside.weighed.own[..sets[0].columns.len()];
         let other = Weighing::new(sets.clone(), effects, z);
         let is_other = |place: usize| {
             let taken = now.taken(place, candidates);

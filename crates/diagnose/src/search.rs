@@ -5,7 +5,7 @@ use super::candidate::Candidate;
 use super::hypothesis::{Hypothesis, Part};
 use super::weighing::{Placed, Weighing, add};
 use denavit_codegen::effect::Occurrence;
-use denavit_evidence::{Glance, Terms, policy};
+use denavit_evidence::{Base, Glance, Terms, policy};
 
 /// One step of a search, for a report.
 #[derive(Clone, Debug)]
@@ -240,23 +240,24 @@ impl<'a> Search<'a> {
         seen
     }
 
-    /// Hypotheses of one more effect beside `parts`, those that the evidence asks for most first.
-    /// If `rivals_of` is an effect and a look from parts and it, those that may stand in its place:
-    /// where it is, and where a first look sees less beside it. What is seen as well elsewhere is
-    /// missing as well.
+    /// Hypotheses of one more effect behind `parts`, those that the evidence asks for most first.
+    /// If `rivals_of` is an effect, its place and a look from parts and it, those that may stand in
+    /// its place: where it is, and where a first look sees less beside it. What is seen as well
+    /// elsewhere is missing as well.
     pub(super) fn with_one_more(
         &self,
         now: &Hypothesis,
         parts: &[Part],
         is_asked: &dyn Fn(usize) -> bool,
-        rivals_of: Option<(&Glance, &Part)>,
+        rivals_of: Option<(&Glance, &Part, usize)>,
     ) -> Vec<Hypothesis> {
         let glance = self.glance(now, parts);
         let seen = self.seen(&glance, parts, is_asked);
+        let place = rivals_of.map_or(parts.len(), |(.., place)| place);
         let at = |part: &Part| &self.of(part).at;
         let is_rival = |(_, part): &&(f64, &Part)| {
             let gain = |glance: &Glance| glance.see(&part.terms).gain;
-            rivals_of.is_none_or(|(beside, own)| {
+            rivals_of.is_none_or(|(beside, own, _)| {
                 at(own) == at(part) || gain(beside) < gain(&glance) - policy::NAMED
             })
         };
@@ -267,7 +268,7 @@ impl<'a> Search<'a> {
             let most = best.map_or(0.0, |one| (one.posterior - now.posterior).max(0.0));
             let is_near = *gain > most - policy::FAR.max(policy::FAR_SHARE * most);
             let is_plain = |one: &Hypothesis| {
-                let other = self.candidate(one, one.parts.len() - 1);
+                let other = self.candidate(one, place);
                 at(part) == &other.at && self.of(part).is_plainer_than(other)
             };
             let is_asked = is_near || *gain > policy::NAMED && best.is_some_and(is_plain);
@@ -275,7 +276,8 @@ impl<'a> Search<'a> {
                 break;
             }
             if is_asked {
-                let parts = [parts, &[(*part).clone()]].concat();
+                let mut parts = parts.to_vec();
+                parts.insert(place, (*part).clone());
                 let first = self.weighed(parts, Some(now), policy::ROUNDS[0]);
                 all.push(self.linearised(first, &self.near(part), policy::ROUNDS[0]));
             }
@@ -292,11 +294,16 @@ impl<'a> Search<'a> {
 
     /// What was found, weighed without what does the same beside it.
     pub(super) fn without_twins(&mut self, found: &Hypothesis) -> Hypothesis {
-        let named = self.weighing.base_without_twins(&found.parts);
-        let base = std::mem::replace(&mut self.weighing.base, named);
-        let alone = self.settled(found.parts.clone(), Some(found));
+        let taken = found.all_taken(self.weighing.candidates);
+        self.settled_by(found, self.weighing.base_beside(&taken, &found.parts))
+    }
+
+    /// What was found, weighed with another base.
+    pub(super) fn settled_by(&mut self, found: &Hypothesis, other: Base) -> Hypothesis {
+        let base = std::mem::replace(&mut self.weighing.base, other);
+        let settled = self.settled(found.parts.clone(), Some(found));
         self.weighing.base = base;
-        alone
+        settled
     }
 
     /// Candidates that notice where an effect is linearised: effects of other joints hardly do.

@@ -64,10 +64,11 @@ impl<'a> Setting<'a> {
     }
 
     /// The model with effects that were found by all logs, fitted to those for training alone.
-    pub(super) fn state(&self, parts: &[Part], z: &[f64]) -> State {
+    pub(super) fn state(&self, found: &Hypothesis, z: &[f64]) -> State {
         let mut weighing = Weighing::new(vec![self.data.train], self.effects(&self.given), z);
-        let parts: Vec<Part> = parts.iter().map(|part| weighing.part(&part.placed)).collect();
-        weighing.base = weighing.base_without_twins(&parts);
+        let parts = found.parts.iter().map(|part| weighing.part(&part.placed));
+        let parts: Vec<Part> = parts.collect();
+        weighing.base = weighing.base_beside(&found.all_taken(self.candidates), &parts);
         let search = Search::new(weighing, [self.candidates.len(), 0], Vec::new(), &mut |_| true);
         let fitted = search.settled(parts, None);
         self.fitted_state(&search.weighing, &fitted)
@@ -137,7 +138,7 @@ impl<'a> Setting<'a> {
         });
         let parts: Vec<Part> = parts.collect();
         let terms: Vec<&Terms> = parts.iter().map(|part| &part.terms).collect();
-        let base = judging.base_without_twins(&parts);
+        let base = judging.base_beside(&state.taken[self.given.len()..], &parts);
         let weighed = base.weigh(&terms, None, policy::ROUNDS[1]);
         Hypothesis { posterior: weighed.log_evidence, parts, weighed }
     }

@@ -41,8 +41,8 @@ pub(super) struct Weighing<'a> {
     pub(super) base: Base,
     /// The columns of what the model itself is not sure of.
     own: Vec<Spectrum>,
-    /// By which time torque and motion are taken to be apart, in its deviations.
-    time: f64,
+    /// The model's own numbers that torques are those of, in their deviations.
+    z: Vec<f64>,
     /// Columns of accelerations count below this frequency \[Hz\].
     pub(super) driven_hz: f64,
 }
@@ -61,7 +61,7 @@ impl<'a> Weighing<'a> {
         let mut weighing = Self {
             base: Base::new(spectra.layout.clone(), residual.clone(), &[]),
             own: Vec::new(),
-            time: z[sets[0].nominal.uncertain.len()],
+            z: z.to_vec(),
             sets,
             candidates: effects.candidates,
             given: effects.taken,
@@ -87,13 +87,39 @@ impl<'a> Weighing<'a> {
         Self { own, ..weighing }
     }
 
-    /// The base without what is too small for a name where a part does the same, and without the
-    /// time between channels where a part is the delay of that joint: of two that do the same
-    /// nobody could say how large each is.
-    pub(super) fn base_without_twins(&self, parts: &[Part]) -> Base {
+    /// The columns of the model's own numbers beside what was found, and the data: an angle turns
+    /// what bodies do, and a gain scales it.
+    fn own_beside(&self, found: &[Taken]) -> (Vec<Spectrum>, Spectrum) {
+        let (mut own, mut data) = (self.own.clone(), self.base.data.clone());
+        // transmissions and delays do what was measured
+        let is_of_numbers = |taken: &&Taken| {
+            let law = &self.candidates[taken.candidate].law;
+            !law.is_of_motion() && law.only_one_of().is_none()
+        };
+        let all: Vec<&Taken> = found.iter().filter(is_of_numbers).collect();
+        let here: Vec<Spectrum> = all.iter().map(|taken| self.spectrum(taken).0).collect();
+        let numbers = if all.is_empty() { 0 } else { self.sets[0].nominal.len() };
+        for (place, column) in own.iter_mut().enumerate().take(numbers) {
+            let mut z = self.z.clone();
+            z[place] += 1.0;
+            let torques: Vec<_> = self.sets.iter().map(|data| data.model_torques(&z)).collect();
+            for (taken, here) in all.iter().zip(&here) {
+                let mut more = self.spectrum_by(taken, &torques).0;
+                add(&mut more, here, -1.0);
+                add(column, &more, 1.0);
+                add(&mut data, &more, self.z[place]);
+            }
+        }
+        (own, data)
+    }
+
+    /// The base beside what was found, without what is too small for a name where one of `parts`
+    /// does the same, and without the time between channels where one is the delay of that joint:
+    /// of two that do the same nobody could say how large each is.
+    pub(super) fn base_beside(&self, found: &[Taken], parts: &[Part]) -> Base {
         let nominal = self.sets[0].nominal;
         let time = nominal.uncertain.len();
-        let (mut own, mut data) = (self.own.clone(), self.base.data.clone());
+        let (mut own, mut data) = self.own_beside(found);
         for part in parts {
             let law = &self.candidates[part.placed.candidate].law;
             // a late position and a lag by the model are cut where time is, and leave it as it is
@@ -102,7 +128,7 @@ impl<'a> Weighing<'a> {
                 let column = std::mem::take(&mut own[time][joint.0]);
                 let whole = self.column(time, f64::INFINITY).swap_remove(joint.0);
                 let unseen =
-                    whole.iter().zip(&column).map(|(whole, own)| self.time * (whole - own));
+                    whole.iter().zip(&column).map(|(whole, own)| self.z[time] * (whole - own));
                 data[joint.0].iter_mut().zip(unseen).for_each(|(row, unseen)| *row += unseen);
             }
         }
@@ -133,25 +159,38 @@ impl<'a> Weighing<'a> {
     /// What an effect does to all sets.
     pub(super) fn responses(&self, taken: &Taken) -> Vec<RowResponse> {
         let law = self.candidates[taken.candidate].law.as_ref();
-        self.in_rows(&|motion| law.response(motion, &taken.values))
+        self.in_rows(&self.torques, &|motion| law.response(motion, &taken.values))
     }
 
-    /// What is given for the motion of each log, in the rows of all sets.
-    fn in_rows(&self, of: &dyn Fn(Motion<'_>) -> Response) -> Vec<RowResponse> {
-        let sets = self.sets.iter().zip(&self.torques);
+    /// What is given for the motion of each log by torques of the model, in the rows of all sets.
+    fn in_rows(
+        &self,
+        torques: &[Vec<ModelTorques>],
+        of: &dyn Fn(Motion<'_>) -> Response,
+    ) -> Vec<RowResponse> {
+        let sets = self.sets.iter().zip(torques);
         sets.map(|(data, torques)| data.in_rows(of, torques)).collect()
     }
 
     /// The spectra of an effect's torque and of its gradient.
     pub(super) fn spectrum(&self, taken: &Taken) -> (Spectrum, Vec<Spectrum>) {
+        self.spectrum_by(taken, &self.torques)
+    }
+
+    fn spectrum_by(
+        &self,
+        taken: &Taken,
+        torques: &[Vec<ModelTorques>],
+    ) -> (Spectrum, Vec<Spectrum>) {
         let law = self.candidates[taken.candidate].law.as_ref();
         if !law.scales_torque() {
             let up_to_hz = self.up_to(law.follows_accelerations());
-            return self.spectra.of_response(&self.sets, &self.responses(taken), up_to_hz);
+            let rows = self.in_rows(torques, &|motion| law.response(motion, &taken.values));
+            return self.spectra.of_response(&self.sets, &rows, up_to_hz);
         }
         // in proportion to loads, as far as references drive these, and to friction
         let [asked, rest] = [true, false].map(|is_asked| {
-            let rows = self.in_rows(&|motion| {
+            let rows = self.in_rows(torques, &|motion| {
                 let total = motion.part(is_asked);
                 law.response(Motion { total: &total, ..motion }, &taken.values)
             });
@@ -218,7 +257,7 @@ impl<'a> Weighing<'a> {
         let gain = |start: &Start| {
             let values: Vec<f64> = start.iter().map(|(value, _)| *value).collect();
             let law = self.candidates[candidate].law.as_ref();
-            let rows = self.in_rows(&|motion| law.torque(motion, &values));
+            let rows = self.in_rows(&self.torques, &|motion| law.torque(motion, &values));
             let up_to_hz = self.up_to(law.follows_accelerations());
             let (known, _) = self.spectra.of_response(&self.sets, &rows, up_to_hz);
             let unpredicted = self.unpredicted(law, &values);

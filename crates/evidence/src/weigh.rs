@@ -48,15 +48,6 @@ impl Weighed {
         let off = DVector::from_fn(moved.len(), |k, _| steps[moved[k]]);
         covariance.cholesky().map_or(f64::INFINITY, |factor| 0.5 * off.dot(&factor.solve(&off)))
     }
-
-    /// The same with its factors in another order: for each of them its place before.
-    pub fn reordered(mut self, order: &[usize]) -> Self {
-        for factors in [&mut self.factors, &mut self.step] {
-            *factors = order.iter().map(|&place| factors[place]).collect();
-        }
-        self.covariance = self.covariance.select_rows(order).select_columns(order);
-        self
-    }
 }
 
 /// The products of one cell: of data, own columns and those of terms, in this order.

@@ -15,6 +15,7 @@ mod search;
 mod separate;
 mod signals;
 mod transmission;
+mod turned;
 
 use denavit_codegen::model::{self, Robot};
 use denavit_plants::shipped;

@@ -22,6 +22,7 @@ pub struct RobotEffect {
     /// Torques, then their derivatives: for each parameter one row for each joint.
     program: LawProgram,
     follows_accelerations: bool,
+    is_of_motion: bool,
 }
 
 /// Whether what a law adds is made of accelerations.
@@ -98,7 +99,8 @@ impl RobotEffect {
         let program = LawProgram::new(&dag, numbers, first.inputs, entries)?;
         let follows_accelerations = is_of_accelerations(&effect.law);
         let (name, parameters) = (effect.name.clone(), Vec::new());
-        Ok(Self { name, parameters, joints, program, follows_accelerations })
+        let is_of_motion = numbers.is_empty();
+        Ok(Self { name, parameters, joints, program, follows_accelerations, is_of_motion })
     }
 
     fn of_moved(
@@ -137,12 +139,18 @@ impl RobotEffect {
         let parameters = effect.parameters.iter().map(|p| LawParameter::new(p, joint)).collect();
         let follows_accelerations = is_of_accelerations(&effect.law);
         let name = effect.name.clone();
-        Ok(Self { name, parameters, joints, program, follows_accelerations })
+        let is_of_motion = numbers.is_empty();
+        Ok(Self { name, parameters, joints, program, follows_accelerations, is_of_motion })
     }
 
     /// Whether what the effect adds is made of accelerations.
     pub fn follows_accelerations(&self) -> bool {
         self.follows_accelerations
+    }
+
+    /// Whether what the effect adds is a function of the motion alone: of no number of the model.
+    pub fn is_of_motion(&self) -> bool {
+        self.is_of_motion
     }
 
     /// What the effect adds to the torques, and the derivative by each parameter. `q`, `qd` and

@@ -201,6 +201,33 @@ fn gradients_of_whole_robots_are_those_of_differences_and_nominal_is_nothing() {
 }
 
 #[test]
+fn slopes_by_parameters_that_are_called_linear_do_not_depend_on_these() {
+    let robot = robot(&text("puma560"));
+    let (link, _) = robot.joints().nth(2).expect("a joint");
+    let motion = motion(6, 3);
+    let [q, qd, qdd] = [0, 1, 2].map(|row| slices(&motion[row]));
+    for (name, at, linear) in [
+        ("payload", EffectPlace::Link(link), 10),
+        ("payload_point", EffectPlace::Link(link), 1),
+        ("joint_zero", EffectPlace::Link(link), 0),
+        ("base_tilt", EffectPlace::Model, 0),
+    ] {
+        let effect = find(name).expect("shipped");
+        let found = RobotEffect::new(&robot, effect, at, &[]).expect("an effect");
+        assert_eq!(found.parameters.iter().filter(|one| one.linear).count(), linear, "{name}");
+        let [slopes, others] = [0.0, 0.3].map(|more| {
+            let of = |linear: bool| if linear { 0.2 + more } else { 0.2 };
+            let values: Vec<f64> = found.parameters.iter().map(|one| of(one.linear)).collect();
+            found.torques([&q, &qd, &qdd], &values, &[]).gradient
+        });
+        for (place, _) in found.parameters.iter().enumerate().filter(|(_, one)| one.linear) {
+            let both = slopes[place].iter().flatten().zip(others[place].iter().flatten());
+            both.for_each(|(one, other)| assert_near(*one, *other, name));
+        }
+    }
+}
+
+#[test]
 fn a_law_of_rates_is_part_of_every_function() {
     let effects = r#"[{"effect": "stribeck", "at": {"link": "upper_arm"},
         "parameters": {"fs": 0.7, "vs": 0.4}},

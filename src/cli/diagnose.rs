@@ -4,7 +4,7 @@ mod page;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{FILES, effects_folder, mapping, read_robot};
+use super::files::{FILES, effects_folder, is_input, mapping, read_robot};
 use super::flags::by_flag;
 use super::json::write_json;
 use super::logs::{log_source, note_logs};
@@ -173,8 +173,7 @@ fn write_folder(
 ) -> Result<DiagnosisFolder, Failure> {
     let _made = NewDirectory::make(folder)?;
     let written = DiagnosisFolder::new(folder, shown);
-    let mut files = Vec::new();
-    let mut _effects_made = None;
+    let (mut files, mut _effects_made) = (Vec::new(), None);
     if written.has_model() {
         let own = effects_folder(&arguments.model, arguments.effects.as_deref());
         if let Some(own) = own.filter(|own| own.is_dir()) {
@@ -184,9 +183,10 @@ fn write_folder(
             _effects_made = path.parent().map(NewDirectory::make).transpose()?;
         }
     }
-    let page = page::of(arguments, shown, &written).render();
-    files.extend(written.contents(shown, page)?);
+    files.extend(written.contents(shown, page::of(arguments, shown, &written).render())?);
+    let outdated = written.outdated(&files, &is_input);
     write_together(&files)?;
+    outdated.iter().try_for_each(std::fs::remove_file)?;
     Ok(written)
 }
 

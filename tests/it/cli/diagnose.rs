@@ -213,6 +213,24 @@ fn every_wrong_log_is_named_and_nothing_is_left_behind() {
     assert!(!directory.path.join("new").exists());
 }
 
+/// A folder has the files of one answer: the model of another one goes with it.
+#[test]
+fn a_folder_that_is_used_again_has_no_model_of_the_answer_before() {
+    let (directory, log) = leg("diagnose_again");
+    let dragged = with_torque(&log, "knee", |_, rate| 0.4 * rate * rate.abs());
+    fs::write(directory.path.join("drag.csv"), dragged).unwrap();
+    let diagnosed = |log: &str| {
+        let words = ["diagnose", MODEL, "--train", log, "--validate", log, "--out", "found"];
+        let run = run_in(&directory.path, &words);
+        assert_eq!(run.code, Some(1), "{}", run.stderr);
+        directory.path.join("found/model.json").exists()
+    };
+    assert!(diagnosed("drag.csv"));
+    fs::write(directory.path.join("found/notes.json"), "{}").unwrap();
+    assert!(!diagnosed("leg.csv"));
+    assert!(directory.path.join("found/notes.json").exists());
+}
+
 #[test]
 fn a_log_that_is_searched_twice_is_refused() {
     let (directory, log) = leg("diagnose_twice");

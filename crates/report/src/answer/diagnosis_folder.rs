@@ -12,6 +12,9 @@ pub(super) const REPORT: &str = "report.html";
 /// The files of a folder.
 pub const DIAGNOSIS_FILES: [&str; 3] = [DIAGNOSIS, MODEL, REPORT];
 
+/// Motions that a folder can have: one of each effect.
+const MOST_MOTIONS: usize = u8::MAX as usize;
+
 /// The file of the experiment that separates an effect from what would do as well.
 pub(super) fn experiment_file(number: usize) -> String {
     format!("separating_{}.json", number + 1)
@@ -67,6 +70,25 @@ impl DiagnosisFolder {
         let motions = shown.experiments();
         let motions = motions.map(|(at, _)| (self.folder.join(experiment_file(at)), what));
         there.chain(motions).collect()
+    }
+
+    /// Files of a diagnosis that the folder has already, and that this one does not write: of
+    /// another answer. A folder without a diagnosis has none, and what is read stays.
+    pub fn outdated(
+        &self,
+        written: &[(PathBuf, Vec<u8>)],
+        is_read: &dyn Fn(&PathBuf) -> bool,
+    ) -> Vec<PathBuf> {
+        if !self.folder.join(DIAGNOSIS).is_file() {
+            return Vec::new();
+        }
+        let motions = (0..MOST_MOTIONS).map(experiment_file);
+        let all = motions.chain([MODEL.to_owned()]).map(|name| self.folder.join(name));
+        let is_old = |path: &PathBuf| {
+            let is_written = written.iter().any(|(new, _)| new == path);
+            !is_written && path.canonicalize().is_ok_and(|path| !is_read(&path))
+        };
+        all.filter(is_old).collect()
     }
 
     /// The files with what is in them; `page` is the page.

@@ -1,11 +1,13 @@
 //! Logs with the nominal model's rows: all that is asked of them, weighted and stacked.
 
+use super::beside::Beside;
 use super::known::weights;
 use super::law::{Motion, Response};
 use super::load_slopes::LoadSlopes;
 use super::nominal::{Nominal, Phi};
 use super::rows::{LogRows, PerJoint, behind_springs, of_axes, torques};
 use super::signals::Signals;
+use super::state::Effects;
 use super::turning::{PER_JOINT, settle, unnamed};
 pub(super) use crate::policy::data::SPRING_ZERO;
 use denavit_evidence::policy;
@@ -67,14 +69,16 @@ pub(super) struct ModelTorques {
     pub(super) phi: Phi,
     /// The numbers of the model file.
     pub(super) numbers: Vec<f64>,
-    /// Rigid bodies alone.
+    /// Rigid bodies alone, with what effects add to them.
     pub(super) load: PerJoint,
     /// Their rates.
     pub(super) load_rate: PerJoint,
-    /// Everything; then, for each spring, what its joint takes less what it passes on.
+    /// Everything but effects; then, for each spring, what its joint takes less what it passes on.
     pub(super) total: PerJoint,
     /// The numbers of each joint's drive.
     pub(super) drives: Vec<Drive>,
+    /// What laws are beside.
+    pub(super) beside: Beside,
     slopes: RefCell<Option<Rc<LoadSlopes>>>,
 }
 
@@ -212,9 +216,12 @@ impl<'a> Data<'a> {
         residual
     }
 
-    /// The torques that the model gives the motion of each log with z.
-    pub(super) fn model_torques(&self, z: &[f64]) -> Vec<ModelTorques> {
-        self.signals.iter().map(|signals| ModelTorques::new(self.nominal, signals, z)).collect()
+    /// The torques that the model gives the motion of each log with z, beside effects.
+    pub(super) fn model_torques(&self, z: &[f64], effects: Effects<'_>) -> Vec<ModelTorques> {
+        let of = |signals| {
+            ModelTorques::new(self.nominal, signals, z).beside(self.nominal, signals, effects)
+        };
+        self.signals.iter().map(of).collect()
     }
 
     /// What is given for the motion of each log, in the rows: of the equations that have rows.
@@ -248,6 +255,11 @@ impl<'a> Data<'a> {
     }
 }
 
+/// Derivatives of torques by time at the samples of a log [N m/s, N/s].
+pub(super) fn rates(torques: &PerJoint, signals: &Signals) -> PerJoint {
+    torques.iter().map(|torque| derivative(torque, signals.step_s)).collect()
+}
+
 /// A response in the rows: for each stretch the torque, and its derivatives by each parameter.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RowResponse {
@@ -275,10 +287,10 @@ impl ModelTorques {
         let (phi, numbers) = (nominal.phi(z), nominal.numbers(z));
         let drives = Drive::all(nominal.model, &phi.drives);
         let load = of_axes(nominal, signals, &phi.loads, true);
-        let rate = |load: &Vec<f64>| derivative(load, signals.step_s);
-        let load_rate = load.iter().map(rate).collect();
+        let load_rate = rates(&load, signals);
         let total = torques(nominal, signals, &phi);
-        Self { phi, numbers, load, load_rate, total, drives, slopes: RefCell::default() }
+        let (beside, slopes) = (Beside::nothing(drives.len()), RefCell::default());
+        Self { phi, numbers, load, load_rate, total, drives, beside, slopes }
     }
 
     /// The motion of a log with these torques.
@@ -287,7 +299,8 @@ impl ModelTorques {
         nominal: &'m Nominal<'m>,
         signals: &'m Signals,
     ) -> Motion<'m> {
-        let Self { phi, numbers, load, load_rate, total, drives, slopes } = self;
-        Motion { model: (nominal, phi), numbers, signals, load, load_rate, total, drives, slopes }
+        let Self { phi, numbers, load, load_rate, total, drives, beside, slopes } = self;
+        let model = (nominal, phi);
+        Motion { model, numbers, signals, load, load_rate, total, drives, beside, slopes }
     }
 }

@@ -20,7 +20,7 @@ use super::rounds::Found;
 use super::search::{Search, Step};
 use super::signals::{Filters, Signals};
 use super::simulated::{MotionGap, MotionGaps, Moved};
-use super::state::{Effects, Setting, State, Taken};
+use super::state::{Effects, MOST_Z, Setting, State, Taken};
 use super::structure::{Structure, describe};
 use super::verdict::{Verdict, judge};
 use super::weighing::{Placed, Weighing};
@@ -184,7 +184,7 @@ pub fn diagnose(
     let states = [&before, &after];
     let all_left = leftovers(&search.weighing.spectra, &found.after.weighed.variances);
     search.tell_stand_ins(&found.after, &all_left, &mut effects);
-    let judged = setting.predicted(&judging, &after, &by_all);
+    let (judging, judged) = setting.predicted(&judging, &after, &by_all);
     let open = [(&search.weighing, &found.after), (&judging, &judged)]
         .map(|(weighing, of)| weighing.open(of, &search.floor));
     let unnamed = all_left.iter().filter(|one| one.share > policy::LEFT);
@@ -214,20 +214,23 @@ fn searched<'s>(
     let floor: Vec<f64> = floor.collect();
     let sets = Vec::from(data.into_array());
     let own = setting.effects(&setting.given);
-    let mut z = null(&sets, own);
+    // Numbers that are driven further have in them what is missing.
+    let mut z: Vec<f64> = null(&sets, own).iter().map(|z| z.clamp(-MOST_Z, MOST_Z)).collect();
     let (mut begun, mut moves, mut steps) = (Vec::<Placed>::new(), 0, Vec::new());
-    let mut screen = Vec::new();
+    let (mut screen, mut beside) = (Vec::new(), Vec::new());
     loop {
-        let weighing = Weighing::new(sets.clone(), own, &z);
+        let weighing = Weighing::new(sets.clone(), own, &z, &beside);
         let watched = &mut |share| watch(&Progress::Evaluated(share));
         let mut search = Search::new(weighing, [setting.given.len(), most], screen, watched);
         search.floor.clone_from(&floor);
+        search.may_move = moves < MOST_MOVES;
         let watched = &mut |taken: &[usize]| watch(&Progress::Found(taken.to_vec()));
-        let found = search.run(&begun, moves < MOST_MOVES, watched);
+        let found = search.run(&begun, watched);
         steps.extend_from_slice(&found.steps);
         let Some(moved) = found.moved else { return (z, search, Found { steps, ..found }) };
+        beside = found.after.all_taken(setting.candidates);
         begun = found.after.parts.into_iter().map(|part| part.placed).collect();
-        (z, moves, screen) = (moved, moves + 1, search.screen);
+        (z, moves, screen) = (moved, moves + 1, search.kept());
     }
 }
 
@@ -251,7 +254,7 @@ fn with_rests<'a>(
 /// The model's own numbers, in their deviations, as all logs have them where nothing is missing.
 fn null(sets: &[&Data<'_>], given: Effects<'_>) -> Vec<f64> {
     let columns = sets[0].columns.len();
-    let weighing = Weighing::new(sets.to_vec(), given, &vec![0.0; columns]);
+    let weighing = Weighing::new(sets.to_vec(), given, &vec![0.0; columns], &[]);
     let weighed = weighing.base.weigh(&[], None, policy::ROUNDS[1]);
     weighed.own[..columns].to_vec()
 }

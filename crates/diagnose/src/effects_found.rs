@@ -129,7 +129,9 @@ pub(super) fn found_effects(
     let whole = (gap(before) - floor).max(gap(before) - gap(after)).max(f64::MIN_POSITIVE);
     let given = setting.given.len();
     let all = &found.after;
-    let predicted = setting.predicted(judging, after, by_all).posterior;
+    let predicted =
+        |state: &State, by_all: &Hypothesis| setting.predicted(judging, state, by_all).1.posterior;
+    let with_all = predicted(after, by_all);
     let of = |place: usize| {
         let mut parts = all.parts.clone();
         parts.remove(place);
@@ -144,7 +146,7 @@ pub(super) fn found_effects(
             trained: search.weighing.size(taken),
             judged: judging.size(taken),
             share: (gap(&reopened) - gap(after)) / whole,
-            log_predicted: predicted - setting.predicted(judging, &reopened, &without).posterior,
+            log_predicted: with_all - predicted(&reopened, &without),
             change_in_time: search.change_in_time(all, place),
             stands_for: None,
             is_named: true,

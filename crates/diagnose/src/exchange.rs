@@ -22,7 +22,7 @@ impl Search<'_> {
         };
         let mut rivals = unseen(&now);
         let mut exchanges = 0;
-        loop {
+        while now.elsewhere.is_none() {
             let may_exchange = exchanges < MOST_EXCHANGES * (1 + now.parts.len());
             let Some(place) = rivals.iter().position(Option::is_none) else {
                 if !may_exchange {
@@ -53,7 +53,7 @@ impl Search<'_> {
                     one.posterior <= now.posterior || !self.is_missing_beside(&own, one, place)
                 });
                 let better = self.better(&now, &rest, place, &all).filter(|_| may_exchange);
-                better.map(|one| self.settled(one.parts.clone(), Some(one)))
+                better.map(|one| self.resettled(one))
             };
             let Some(next) = next else {
                 // A better formula of the same is no rival of the plain name.
@@ -142,7 +142,7 @@ impl Search<'_> {
             let best = all.iter().find(|one| self.is_worth(&rest, one, last));
             let next = best.map(|best| self.plainest(best, last, all.iter()));
             if let Some(next) = next.filter(|one| is_better(one)) {
-                return Some(self.settled(next.parts.clone(), Some(next)));
+                return Some(self.resettled(next));
             }
         }
         None

@@ -235,15 +235,15 @@ impl Ambiguity<'_> {
             return None;
         }
         // What is measured there is what the model says: that tells the level of noise.
-        let torques = data.model_torques(self.z).swap_remove(0).total;
+        let effects = Effects { candidates: self.candidates, taken: &[] };
+        let torques = data.model_torques(self.z, effects).swap_remove(0).total;
         for stretch in data.stretches.clone() {
             if stretch.equation == stretch.joint.0 {
                 let computed = data.signals[0].rows_of(&torques[stretch.equation]);
                 data.torque[stretch.range()].copy_from_slice(&computed);
             }
         }
-        let effects = Effects { candidates: self.candidates, taken: &[] };
-        let weighing = Weighing::new(vec![&data], effects, self.z);
+        let weighing = Weighing::new(vec![&data], effects, self.z, &self.others);
         let names = self.names.iter().map(|one| weighing.part(one)).collect();
         let search = Search::new(weighing, [self.candidates.len(), 0], Vec::new(), &mut |_| true);
         Some(asked(&mut Seen { search, data: &data, names, floor: self.floor }))

@@ -82,7 +82,11 @@ impl Follower<'_> {
         let joints = nominal.model.joints.len();
         let stiffness = nominal.phi(self.z).springs;
         for _ in 0..MOST_ROUNDS {
-            let torques = ModelTorques::new(nominal, &signals, self.z);
+            let torques = ModelTorques::new(nominal, &signals, self.z).beside(
+                nominal,
+                &signals,
+                self.effects,
+            );
             let mut missed = torques.total[joints..].to_vec();
             for Taken { candidate, values } in self.effects.taken {
                 let law = &self.effects.candidates[*candidate].law;

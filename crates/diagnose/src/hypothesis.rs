@@ -33,6 +33,8 @@ pub(super) struct Hypothesis {
     pub(super) weighed: Weighed,
     /// Log of evidence and prior odds.
     pub(super) posterior: f64,
+    /// The model's own numbers beside which it was weighed, if these are not those of its search.
+    pub(super) elsewhere: Option<Vec<f64>>,
 }
 
 impl Hypothesis {

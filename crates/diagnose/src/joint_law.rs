@@ -7,7 +7,9 @@ use crate::policy::joint_law::{ALL_GIVEN, OF_NOISE};
 use denavit_codegen::effect::{Channel, EffectSite, SpringSide};
 use denavit_evidence::Unpredicted;
 use denavit_measure::JointIndex;
-use denavit_plants::effect::{AddedTorques, EffectLaw, JointSamples, LawParameter, RobotEffect};
+use denavit_plants::effect::{
+    AddedTorques, EffectLaw, JointSamples, LawParameter, Moves, RobotEffect,
+};
 
 /// How a law of a joint meets what was measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -200,6 +202,9 @@ impl JointLaw {
         if matches!(self.acts, Acts::Delay | Acts::Followed) {
             motion.signals.unbalanced(self.joint, &mut found);
         }
+        if self.law.channel() != Some(Channel::Torque) || self.law.is_transmission() {
+            motion.beside.logged(&mut found);
+        }
         found
     }
 }
@@ -237,6 +242,11 @@ impl Law for JointLaw {
             _ => return None,
         };
         Some((of, self.joint))
+    }
+
+    fn factor(&self, motion: Motion<'_>, values: &[f64]) -> Option<(JointIndex, Vec<f64>)> {
+        let factor = self.law.factor(&samples(&motion, self.joint, self.other), values)?;
+        Some((self.joint, factor))
     }
 
     fn unpredicted(&self, motion: Motion<'_>, values: &[f64]) -> Unpredicted {
@@ -287,12 +297,20 @@ impl Law for RobotLaw {
         self.effect.is_of_motion()
     }
 
+    fn turns_numbers(&self) -> bool {
+        self.effect.turns_numbers()
+    }
+
+    fn moves(&self, values: &[f64], numbers: &[f64]) -> Option<Moves> {
+        (!self.is_of_drives).then(|| self.effect.moves(values, numbers))
+    }
+
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
         let signals = motion.signals;
         let [q, qd, qdd] = [&signals.q, &signals.qd, &signals.qdd]
             .map(|all| all.iter().map(|one| one.as_slice()).collect::<Vec<&[f64]>>());
         let AddedTorques { mut torque, mut gradient } =
-            self.effect.torques([&q, &qd, &qdd], values, motion.numbers);
+            self.effect.torques([&q, &qd, &qdd], values, motion.numbers, &motion.beside.moves);
         // What moves the bodies is passed on by the springs.
         if !self.is_of_drives {
             for spring in &motion.model.0.springs {
@@ -300,6 +318,8 @@ impl Law for RobotLaw {
                 all.for_each(|joints| joints.push(joints[spring.joint.0].clone()));
             }
         }
-        Response { equations: (0..torque.len()).collect(), torque, gradient }
+        let mut found = Response { equations: (0..torque.len()).collect(), torque, gradient };
+        motion.beside.logged(&mut found);
+        found
     }
 }

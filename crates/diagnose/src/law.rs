@@ -1,5 +1,6 @@
 //! What an effect does to the torques of a log: its law on numbers.
 
+use super::beside::Beside;
 use super::given::Belief;
 use super::load_slopes::LoadSlopes;
 use super::nominal::{Nominal, Phi};
@@ -7,7 +8,7 @@ use super::rows::{PerJoint, of_axes, torques};
 use super::signals::Signals;
 use denavit_evidence::Unpredicted;
 use denavit_measure::JointIndex;
-use denavit_plants::effect::{Drive, EffectLaw, LawParameter};
+use denavit_plants::effect::{Drive, EffectLaw, LawParameter, Moves};
 use std::cell::RefCell;
 use std::rc::Rc;
 
@@ -21,7 +22,7 @@ pub struct Motion<'a> {
     pub numbers: &'a [f64],
     /// Positions, rates and accelerations at the full rate.
     pub signals: &'a Signals,
-    /// Torques of rigid bodies, without friction [N m, N].
+    /// Torques of rigid bodies, without friction, with what effects add to them [N m, N].
     pub load: &'a PerJoint,
     /// Their derivatives by time [N m/s, N/s].
     pub load_rate: &'a PerJoint,
@@ -29,6 +30,8 @@ pub struct Motion<'a> {
     pub total: &'a PerJoint,
     /// The numbers of each joint's drive.
     pub drives: &'a [Drive],
+    /// What laws are beside.
+    pub(super) beside: &'a Beside,
     /// The slopes that were asked for last: laws of one joint are looked at one after the other.
     pub(super) slopes: &'a RefCell<Option<Rc<LoadSlopes>>>,
 }
@@ -50,11 +53,19 @@ impl Motion<'_> {
         let of_joint = |joint: usize| {
             let (inertia, [_, qdd]) =
                 (self.drives[joint].inertia, self.signals.of_drive(JointIndex(joint)));
-            let asked = self.load[joint].iter().zip(qdd).map(|(load, qdd)| load + inertia * qdd);
+            let load = self.own_load(joint).zip(qdd);
+            let asked = load.map(|(load, qdd)| load + inertia * qdd);
             let both = asked.zip(&self.total[joint]);
             both.map(|(asked, total)| if is_asked { asked } else { total - asked }).collect()
         };
         (0..self.drives.len()).map(of_joint).collect()
+    }
+
+    /// Torques of the model's own bodies [N m, N].
+    fn own_load(&self, joint: usize) -> impl Iterator<Item = f64> {
+        let more = self.beside.loads.get(joint).into_iter().flatten();
+        let more = more.copied().chain(std::iter::repeat(0.0));
+        self.load[joint].iter().zip(more).map(|(load, more)| load - more)
     }
 
     /// What bodies ask of all equations more in another motion, whose drives move as in this one
@@ -62,8 +73,9 @@ impl Motion<'_> {
     pub(super) fn loads_beyond(&self, signals: &Signals) -> PerJoint {
         let (nominal, phi) = self.model;
         let mut loads = of_axes(nominal, signals, &phi.loads, true);
-        let both = loads.iter_mut().flatten().zip(self.load.iter().flatten());
-        both.for_each(|(load, own)| *load -= own);
+        for (joint, load) in loads.iter_mut().enumerate() {
+            load.iter_mut().zip(self.own_load(joint)).for_each(|(load, own)| *load -= own);
+        }
         let sprung = nominal.springs.iter().map(|spring| loads[spring.joint.0].clone());
         loads.extend(sprung.collect::<PerJoint>());
         loads
@@ -173,6 +185,21 @@ pub trait Law {
 
     /// What a joint has one of, and the joint, of laws that are exchanged and never added.
     fn only_one_of(&self) -> Option<(OnlyOne, JointIndex)> {
+        None
+    }
+
+    /// What it moves that other laws depend on, of a law that moves bodies or adds some.
+    fn moves(&self, _values: &[f64], _numbers: &[f64]) -> Option<Moves> {
+        None
+    }
+
+    /// Whether it turns what the model's own numbers do.
+    fn turns_numbers(&self) -> bool {
+        false
+    }
+
+    /// The joint whose torque it multiplies in a log, and by what.
+    fn factor(&self, _motion: Motion<'_>, _values: &[f64]) -> Option<(JointIndex, Vec<f64>)> {
         None
     }
 

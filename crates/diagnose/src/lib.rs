@@ -8,6 +8,7 @@
 //! - [`diagnose()`]: which effects are missing, by their evidence
 
 mod behind_law;
+mod beside;
 mod cancelling;
 mod candidate;
 mod catalogue;

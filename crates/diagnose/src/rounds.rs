@@ -2,8 +2,7 @@
 
 use super::hypothesis::{Hypothesis, Part};
 use super::search::{Search, Step};
-use super::state::Effects;
-use super::weighing::{Placed, Weighing, add};
+use super::weighing::{Placed, Weighing};
 use denavit_evidence::policy;
 use std::collections::BTreeSet;
 
@@ -34,7 +33,6 @@ impl Search<'_> {
     pub(super) fn run(
         &mut self,
         begun: &[Placed],
-        may_move: bool,
         watch: &mut dyn FnMut(&[usize]) -> bool,
     ) -> Found {
         let before = self.weighed(Vec::new(), None, policy::ROUNDS[1]);
@@ -62,7 +60,7 @@ impl Search<'_> {
                     seen.push(next.names());
                     rivals = None;
                     now = next;
-                    moved = if may_move { self.moved_numbers(&now) } else { None };
+                    moved = if self.may_move { self.moved_numbers(&now) } else { None };
                     if moved.is_some() {
                         break (false, false);
                     }
@@ -75,7 +73,8 @@ impl Search<'_> {
             let (next, others) = self.exchanged(now.clone(), &|_| true, &mut unmerged);
             let is_new = !seen.contains(&next.names());
             (now, rivals) = (next, Some(others));
-            if !is_new {
+            moved.clone_from(&now.elsewhere);
+            if !is_new || moved.is_some() {
                 break (room == 0, false);
             }
             seen.push(now.names());
@@ -95,7 +94,7 @@ impl Search<'_> {
         let is_taken = step.is_taken;
         steps.push(step);
         let chosen = is_taken.then(|| self.chosen(now, all).expect("a step was taken"))?;
-        Some(self.settled(chosen.parts.clone(), Some(&chosen)))
+        Some(self.resettled(&chosen))
     }
 
     /// What was found without the effect in one place, which is no candidate then. Others are
@@ -113,27 +112,22 @@ impl Search<'_> {
     /// The model's own numbers by what was found, if the logs are more likely where laws are
     /// evaluated with these, or the laws do something else there that is worth a name: an angle
     /// that is off by much turns what the numbers do, and a gain scales it.
-    fn moved_numbers(&mut self, now: &Hypothesis) -> Option<Vec<f64>> {
-        let taken = now.all_taken(self.weighing.candidates);
-        let beside = self.settled_by(now, self.weighing.base_beside(&taken, &[]));
-        let Weighing { sets, candidates, given, .. } = &self.weighing;
-        let effects = Effects { candidates, taken: given };
-        let z = &beside.weighed.own[..sets[0].columns.len()];
-        let other = Weighing::new(sets.clone(), effects, z);
-        let is_other = |place: usize| {
-            let taken = now.taken(place, candidates);
-            let mut torque = other.spectrum(&taken).0;
-            add(&mut torque, &self.weighing.spectrum(&taken).0, -1.0);
-            other.spectra.largest_share(&torque) > policy::WORTH
-        };
-        if (0..now.parts.len()).any(is_other) {
-            return Some(z.to_vec());
+    fn moved_numbers(&self, now: &Hypothesis) -> Option<Vec<f64>> {
+        if now.elsewhere.is_some() {
+            return now.elsewhere.clone();
         }
-        let parts = now.parts.iter().map(|part| other.part(&part.placed)).collect();
-        let floor = self.floor.clone();
-        let other = Self { weighing: other, screen: Vec::new(), floor, ..*self };
-        let moved = other.settled(parts, Some(now));
+        let Weighing { z, candidates, .. } = &self.weighing;
+        let beside = self.weighing.beside(z, &now.all_taken(candidates));
+        let beside = self.settled_in(beside, now);
+        let (z, taken) = (self.weighing.numbers(&beside), beside.all_taken(candidates));
+        let other = self.weighing.beside(&z, &taken);
+        let change =
+            |taken| other.spectra.largest_share(&self.weighing.change(taken, &other.torques));
+        if taken.iter().any(|taken| change(taken) > policy::WORTH) {
+            return Some(z);
+        }
+        let moved = self.settled_in(other, now);
         let gain = moved.weighed.log_evidence - now.weighed.log_evidence;
-        (gain > policy::NAMED).then(|| z.to_vec())
+        (gain > policy::NAMED).then_some(z)
     }
 }

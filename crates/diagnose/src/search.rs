@@ -5,7 +5,7 @@ use super::candidate::Candidate;
 use super::hypothesis::{Hypothesis, Part};
 use super::weighing::{Placed, Weighing, add};
 use denavit_codegen::effect::Occurrence;
-use denavit_evidence::{Base, Glance, Terms, policy};
+use denavit_evidence::{Glance, Terms, policy};
 
 /// One step of a search, for a report.
 #[derive(Clone, Debug)]
@@ -31,6 +31,8 @@ pub(super) struct Search<'a> {
     pub(super) log_choices: f64,
     /// Most effects that are added.
     pub(super) most: usize,
+    /// Whether it may end to begin again with other numbers of the model.
+    pub(super) may_move: bool,
     /// What noise leaves of each channel, as a share of its torque.
     pub(super) floor: Vec<f64>,
 }
@@ -55,7 +57,6 @@ impl<'a> Search<'a> {
         watch: &mut dyn FnMut(f64) -> bool,
     ) -> Self {
         let candidates = weighing.candidates;
-        let is_first = screen.is_empty();
         screen.resize(candidates.len(), Vec::new());
         let before = weighing.base.weigh(&[], None, policy::ROUNDS[1]);
         let glance = Glance::new(&weighing.base, &[], &before.variances);
@@ -63,7 +64,7 @@ impl<'a> Search<'a> {
             if !watch(number as f64 / candidates.len() as f64) {
                 break;
             }
-            if !is_first && candidate.law.is_of_motion() {
+            if !screen[number].is_empty() && weighing.is_of_motion(candidate) {
                 continue;
             }
             let all = weighing.starts(candidate);
@@ -75,7 +76,17 @@ impl<'a> Search<'a> {
         let weights = candidates.iter().skip(given).map(|one| log_occurrence(one).exp());
         let log_choices = weights.sum::<f64>().max(1.0).ln();
         let floor = vec![0.0; weighing.spectra.torque.len()];
-        Self { weighing, screen, log_choices, most, floor }
+        Self { weighing, screen, log_choices, most, may_move: false, floor }
+    }
+
+    /// What was seen of each candidate that does the same in a search with other numbers.
+    pub(super) fn kept(mut self) -> Vec<Vec<Part>> {
+        for (candidate, own) in self.weighing.candidates.iter().zip(&mut self.screen) {
+            if !self.weighing.is_of_motion(candidate) {
+                own.clear();
+            }
+        }
+        self.screen
     }
 
     /// The step to the best of some hypotheses.
@@ -279,11 +290,47 @@ impl<'a> Search<'a> {
                 let mut parts = parts.to_vec();
                 parts.insert(place, (*part).clone());
                 let first = self.weighed(parts, Some(now), policy::ROUNDS[0]);
-                all.push(self.linearised(first, &self.near(part), policy::ROUNDS[0]));
+                let one = self.linearised(first, &self.near(part), policy::ROUNDS[0]);
+                all.push(self.turned(one, place));
             }
         }
         all.sort_by(|a, b| b.posterior.total_cmp(&a.posterior));
         all
+    }
+
+    /// A hypothesis whose effect in a place turns what the model's own numbers do, weighed by those
+    /// that it has: where these had it in them, it is not what it is.
+    fn turned(&self, mut one: Hypothesis, place: usize) -> Hypothesis {
+        let weighing = &self.weighing;
+        let is_elsewhere = |one: &Hypothesis| {
+            let turns = self.candidate(one, place).law.turns_numbers();
+            let more = || {
+                let torques = weighing.torques_at(&weighing.numbers(one));
+                weighing.change(&one.taken(place, weighing.candidates), &torques)
+            };
+            turns && weighing.base.nats(&more(), &one.weighed.variances) > policy::NAMED
+        };
+        if !self.may_move || !is_elsewhere(&one) {
+            return one;
+        }
+        for _ in 0..policy::LINEARISED {
+            let z = weighing.numbers(&one);
+            let other = weighing.beside(&z, &one.all_taken(weighing.candidates));
+            let next = self.settled_in(other, &one);
+            if next.posterior < one.posterior + policy::NAMED {
+                break;
+            }
+            one = Hypothesis { elsewhere: Some(z), ..next };
+        }
+        one
+    }
+
+    /// A hypothesis with all of its effects linearised at their most likely values.
+    pub(super) fn resettled(&self, one: &Hypothesis) -> Hypothesis {
+        match one.elsewhere {
+            Some(_) => one.clone(),
+            None => self.settled(one.parts.clone(), Some(one)),
+        }
     }
 
     /// Effects together, weighed where all of them are linearised at their most likely values.
@@ -292,18 +339,29 @@ impl<'a> Search<'a> {
         self.linearised(first, &|_| true, policy::ROUNDS[1])
     }
 
-    /// What was found, weighed without what does the same beside it.
-    pub(super) fn without_twins(&mut self, found: &Hypothesis) -> Hypothesis {
-        let taken = found.all_taken(self.weighing.candidates);
-        self.settled_by(found, self.weighing.base_beside(&taken, &found.parts))
+    /// What was found, weighed by the numbers that it has, without what does the same beside it.
+    pub(super) fn without_twins(&self, found: &Hypothesis) -> Hypothesis {
+        let mut now = found.clone();
+        for round in 0..policy::LINEARISED {
+            let z = self.weighing.numbers(&now);
+            let mut weighing = self.weighing.beside(&z, &now.all_taken(self.weighing.candidates));
+            weighing.base = weighing.base_beside(&now.parts);
+            let next = Hypothesis { elsewhere: Some(z), ..self.settled_in(weighing, &now) };
+            let change = (next.posterior - now.posterior).abs();
+            now = next;
+            if round > 0 && change < policy::SETTLED {
+                break;
+            }
+        }
+        now
     }
 
-    /// What was found, weighed with another base.
-    pub(super) fn settled_by(&mut self, found: &Hypothesis, other: Base) -> Hypothesis {
-        let base = std::mem::replace(&mut self.weighing.base, other);
-        let settled = self.settled(found.parts.clone(), Some(found));
-        self.weighing.base = base;
-        settled
+    /// Effects weighed among other numbers of the model, or beside other effects.
+    pub(super) fn settled_in(&self, weighing: Weighing<'a>, found: &Hypothesis) -> Hypothesis {
+        let parts = found.parts.iter().map(|part| weighing.part(&part.placed)).collect();
+        let floor = self.floor.clone();
+        let other = Self { weighing, screen: Vec::new(), floor, ..*self };
+        other.settled(parts, Some(found))
     }
 
     /// Candidates that notice where an effect is linearised: effects of other joints hardly do.
@@ -390,6 +448,11 @@ impl<'a> Search<'a> {
         let weighed = self.weighing.base.weigh(&terms, start, rounds);
         let of_parts: f64 = parts.iter().map(|part| self.log_prior(part)).sum();
         let more = policy::ONE_MORE * parts.len().saturating_sub(1) as f64;
-        Hypothesis { posterior: weighed.log_evidence + of_parts + more, parts, weighed }
+        Hypothesis {
+            posterior: weighed.log_evidence + of_parts + more,
+            parts,
+            weighed,
+            elsewhere: None,
+        }
     }
 }

@@ -65,10 +65,13 @@ impl<'a> Setting<'a> {
 
     /// The model with effects that were found by all logs, fitted to those for training alone.
     pub(super) fn state(&self, found: &Hypothesis, z: &[f64]) -> State {
-        let mut weighing = Weighing::new(vec![self.data.train], self.effects(&self.given), z);
+        let z = found.elsewhere.as_deref().unwrap_or(z);
+        let taken = found.all_taken(self.candidates);
+        let effects = self.effects(&self.given);
+        let mut weighing = Weighing::new(vec![self.data.train], effects, z, &taken);
         let parts = found.parts.iter().map(|part| weighing.part(&part.placed));
         let parts: Vec<Part> = parts.collect();
-        weighing.base = weighing.base_beside(&found.all_taken(self.candidates), &parts);
+        weighing.base = weighing.base_beside(&parts);
         let search = Search::new(weighing, [self.candidates.len(), 0], Vec::new(), &mut |_| true);
         let fitted = search.settled(parts, None);
         self.fitted_state(&search.weighing, &fitted)
@@ -89,7 +92,7 @@ impl<'a> Setting<'a> {
             taken.push(fitted.taken(place, self.candidates));
             deviations.push(fitted.deviations(place));
         }
-        let torques = self.data.map(|data| data.model_torques(&z));
+        let torques = self.data.map(|data| data.model_torques(&z, self.effects(&taken)));
         let left = |data: &Data<'a>, torques: &[ModelTorques]| {
             data.left(self.effects(&taken), &z, torques)
         };
@@ -102,7 +105,7 @@ impl<'a> Setting<'a> {
 
     /// Held-out logs alone, in which effects are weighed.
     pub(super) fn judging(&self, z: &[f64]) -> Weighing<'_> {
-        Weighing::new(vec![self.data.held_out], self.effects(&self.given), z)
+        Weighing::new(vec![self.data.held_out], self.effects(&self.given), z, &[])
     }
 
     /// The deviations of an effect that was found. Another law than what is there has other values
@@ -119,15 +122,16 @@ impl<'a> Setting<'a> {
     /// Held-out logs with the effects as those that were fitted have them, weighed. Noise is that
     /// of the held-out logs: what changes between logs is no reason to leave an effect out. What
     /// every drive has may have other values in another motion: of anything else that is what is
-    /// asked.
-    pub(super) fn predicted(
+    /// asked. In what they are weighed comes with them.
+    pub(super) fn predicted<'s>(
         &self,
-        judging: &Weighing<'_>,
+        judging: &Weighing<'s>,
         state: &State,
         by_all: &Hypothesis,
-    ) -> Hypothesis {
-        let found = state.taken.iter().skip(self.given.len()).enumerate();
-        let parts = found.map(|(place, taken)| {
+    ) -> (Weighing<'s>, Hypothesis) {
+        let found = &state.taken[self.given.len()..];
+        let judging = judging.beside(&judging.z, found);
+        let parts = found.iter().enumerate().map(|(place, taken)| {
             let Taken { candidate, values } = taken.clone();
             let deviations = match self.candidates[candidate].is_standard() {
                 true => self.errors(state, by_all, place),
@@ -138,15 +142,16 @@ impl<'a> Setting<'a> {
         });
         let parts: Vec<Part> = parts.collect();
         let terms: Vec<&Terms> = parts.iter().map(|part| &part.terms).collect();
-        let base = judging.base_beside(&state.taken[self.given.len()..], &parts);
+        let base = judging.base_beside(&parts);
         let weighed = base.weigh(&terms, None, policy::ROUNDS[1]);
-        Hypothesis { posterior: weighed.log_evidence, parts, weighed }
+        (judging, Hypothesis { posterior: weighed.log_evidence, parts, weighed, elsewhere: None })
     }
 
     /// What the model as it is given leaves of a set of logs.
     pub(super) fn as_given(&self, data: &Data<'_>) -> Vec<f64> {
         let z = vec![0.0; data.columns.len()];
-        data.left(self.effects(&self.given), &z, &data.model_torques(&z))
+        let given = self.effects(&self.given);
+        data.left(given, &z, &data.model_torques(&z, given))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::candidate::{Candidate, Start, starts};
 use super::data::{Data, ModelTorques, RowResponse};
-use super::hypothesis::Part;
+use super::hypothesis::{Hypothesis, Part};
 use super::law::{Law, Motion, OnlyOne, Response};
 use super::nominal::Nominal;
 use super::signals::Signals;
@@ -35,6 +35,8 @@ pub(super) struct Weighing<'a> {
     pub(super) candidates: &'a [Candidate],
     /// What the model has of that.
     pub(super) given: &'a [Taken],
+    /// That, and what was found: laws are evaluated beside these.
+    present: Vec<Taken>,
     /// Torques of the model along each log of each set.
     pub(super) torques: Vec<Vec<ModelTorques>>,
     pub(super) spectra: Spectra,
@@ -42,19 +44,27 @@ pub(super) struct Weighing<'a> {
     /// The columns of what the model itself is not sure of.
     own: Vec<Spectrum>,
     /// The model's own numbers that torques are those of, in their deviations.
-    z: Vec<f64>,
+    pub(super) z: Vec<f64>,
     /// Columns of accelerations count below this frequency \[Hz\].
     pub(super) driven_hz: f64,
 }
 
 impl<'a> Weighing<'a> {
-    /// Sets of logs with the torques of the model's own numbers at z, and the effects that it has.
-    pub(super) fn new(sets: Vec<&'a Data<'a>>, effects: Effects<'a>, z: &[f64]) -> Self {
+    /// Sets of logs with the torques of the model's own numbers at z, and the effects that it has;
+    /// laws are evaluated beside these and what was found.
+    pub(super) fn new(
+        sets: Vec<&'a Data<'a>>,
+        effects: Effects<'a>,
+        z: &[f64],
+        found: &[Taken],
+    ) -> Self {
         let cutoff_hz = sets[0].signals.first().map_or(0.0, |signals| signals.torque_hz);
         let spectra = Spectra::new(&sets, cutoff_hz);
         let logs = sets.iter().flat_map(|data| &data.signals);
         let driven_hz = logs.map(Signals::driven_hz).fold(0.0, f64::max);
-        let torques = sets.iter().map(|data| data.model_torques(z)).collect();
+        let present = [effects.taken, found].concat();
+        let beside = Effects { taken: &present, ..effects };
+        let torques = sets.iter().map(|data| data.model_torques(z, beside)).collect();
         let left: Vec<Vec<f64>> = sets.iter().map(|data| data.residual_of(z)).collect();
         let rows: Vec<&[f64]> = left.iter().map(Vec::as_slice).collect();
         let mut residual = spectra.of_rows(&sets, &rows, f64::INFINITY);
@@ -65,6 +75,7 @@ impl<'a> Weighing<'a> {
             sets,
             candidates: effects.candidates,
             given: effects.taken,
+            present,
             torques,
             spectra,
             driven_hz,
@@ -83,14 +94,14 @@ impl<'a> Weighing<'a> {
                 own.push(column);
             }
         }
+        weighing.move_own(&mut own, &mut residual, found);
         weighing.base = Base::new(weighing.spectra.layout.clone(), residual, &own);
         Self { own, ..weighing }
     }
 
-    /// The columns of the model's own numbers beside what was found, and the data: an angle turns
-    /// what bodies do, and a gain scales it.
-    fn own_beside(&self, found: &[Taken]) -> (Vec<Spectrum>, Spectrum) {
-        let (mut own, mut data) = (self.own.clone(), self.base.data.clone());
+    /// Lets the columns of the model's own numbers, and the data, be those beside what was found:
+    /// an angle turns what bodies do, and a gain scales it.
+    fn move_own(&self, own: &mut [Spectrum], data: &mut Spectrum, found: &[Taken]) {
         // transmissions and delays do what was measured
         let is_of_numbers = |taken: &&Taken| {
             let law = &self.candidates[taken.candidate].law;
@@ -102,24 +113,53 @@ impl<'a> Weighing<'a> {
         for (place, column) in own.iter_mut().enumerate().take(numbers) {
             let mut z = self.z.clone();
             z[place] += 1.0;
-            let torques: Vec<_> = self.sets.iter().map(|data| data.model_torques(&z)).collect();
+            let torques = self.torques_at(&z);
             for (taken, here) in all.iter().zip(&here) {
                 let mut more = self.spectrum_by(taken, &torques).0;
                 add(&mut more, here, -1.0);
                 add(column, &more, 1.0);
-                add(&mut data, &more, self.z[place]);
+                add(data, &more, self.z[place]);
             }
         }
-        (own, data)
     }
 
-    /// The base beside what was found, without what is too small for a name where one of `parts`
-    /// does the same, and without the time between channels where one is the delay of that joint:
-    /// of two that do the same nobody could say how large each is.
-    pub(super) fn base_beside(&self, found: &[Taken], parts: &[Part]) -> Base {
+    /// The same with other numbers, beside other effects.
+    pub(super) fn beside(&self, z: &[f64], found: &[Taken]) -> Self {
+        let effects = Effects { candidates: self.candidates, taken: self.given };
+        Self::new(self.sets.clone(), effects, z, found)
+    }
+
+    /// The model's own numbers by a hypothesis, in their deviations.
+    pub(super) fn numbers(&self, hypothesis: &Hypothesis) -> Vec<f64> {
+        hypothesis.weighed.own[..self.sets[0].columns.len()].to_vec()
+    }
+
+    /// The torques of the model with other numbers, beside the same effects.
+    pub(super) fn torques_at(&self, z: &[f64]) -> Vec<Vec<ModelTorques>> {
+        let beside = Effects { candidates: self.candidates, taken: &self.present };
+        self.sets.iter().map(|data| data.model_torques(z, beside)).collect()
+    }
+
+    /// What an effect does more by other torques of the model.
+    pub(super) fn change(&self, taken: &Taken, torques: &[Vec<ModelTorques>]) -> Spectrum {
+        let mut torque = self.spectrum_by(taken, torques).0;
+        add(&mut torque, &self.spectrum(taken).0, -1.0);
+        torque
+    }
+
+    /// Whether a law does the same whatever the model's numbers are, and what it is beside.
+    pub(super) fn is_of_motion(&self, candidate: &Candidate) -> bool {
+        let is_same = |torques: &ModelTorques| torques.beside.is_nothing_to(candidate);
+        candidate.law.is_of_motion() && self.torques.iter().flatten().all(is_same)
+    }
+
+    /// The base without what is too small for a name where one of `parts` does the same, and
+    /// without the time between channels where one is the delay of that joint: of two that do the
+    /// same nobody could say how large each is.
+    pub(super) fn base_beside(&self, parts: &[Part]) -> Base {
         let nominal = self.sets[0].nominal;
         let time = nominal.uncertain.len();
-        let (mut own, mut data) = self.own_beside(found);
+        let (mut own, mut data) = (self.own.clone(), self.base.data.clone());
         for part in parts {
             let law = &self.candidates[part.placed.candidate].law;
             // a late position and a lag by the model are cut where time is, and leave it as it is

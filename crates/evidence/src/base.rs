@@ -25,6 +25,15 @@ pub struct Base {
 }
 
 impl Base {
+    /// By how much a torque can change the log evidence, with the variance of each cell.
+    pub fn nats(&self, torque: &Spectrum, variances: &[f64]) -> f64 {
+        let of = |((channel, rows), variance): ((usize, Range<usize>), &f64)| {
+            let rows = torque[channel].get(rows).into_iter().flatten();
+            rows.map(|row| row * row).sum::<f64>() / variance
+        };
+        0.5 * self.layout.cells().zip(variances).map(of).sum::<f64>()
+    }
+
     /// Data and own columns, each a spectrum with the prior N(0, 1) of its factor.
     pub fn new(layout: Layout, data: Spectrum, own: &[Spectrum]) -> Self {
         let parameters = own.len();

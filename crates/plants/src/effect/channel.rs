@@ -219,6 +219,19 @@ impl EffectLaw {
         self.channel.as_ref().is_some_and(|law| law.is_gain)
     }
 
+    /// What a torque is multiplied by in its log, sample by sample; none of laws that do anything
+    /// else to it.
+    pub fn factor(&self, samples: &JointSamples<'_>, values: &[f64]) -> Option<Vec<f64>> {
+        let does_more =
+            |law: &&ChannelLaw| law.is_inverse || law.is_timing || law.transmission.is_some();
+        let law = self
+            .channel
+            .as_ref()
+            .filter(|law| law.channel == Channel::Torque && !does_more(law))?;
+        let columns: Vec<&[f64]> = law.columns.iter().map(|&at| samples.column(at)).collect();
+        Some(law.slope.run(&columns, values, samples.len()).swap_remove(0))
+    }
+
     /// Whether the truth is what is logged, at another time: a drive that follows its command.
     pub fn follows_log(&self) -> bool {
         self.channel.as_ref().is_some_and(|law| law.is_inverse && law.is_timing)

@@ -20,7 +20,7 @@ mod transmission;
 
 pub use added::{AddedLaw, ApartEffects, apart};
 pub use ahead::Passing;
-pub use robot::{AddedTorques, RobotEffect};
+pub use robot::{AddedTorques, Moves, RobotEffect};
 pub use transmission::{Drive, GivesWay, Transmitted};
 
 use crate::error::{Cause, Error};

@@ -5,9 +5,11 @@ use super::{LawParameter, gradient};
 use crate::error::{Cause, Error};
 use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::effect::{Effect, Law, ModelTerm, Property, attach, with_term};
-use denavit_codegen::expr::{ExprId, substitute};
+use denavit_codegen::expr::{Dag, ExprId, SymbolClass, substitute};
 use denavit_codegen::function::FunctionName;
-use denavit_codegen::model::{AddedEffect, EffectPlace, JointKind, Robot, Terms, bake_where};
+use denavit_codegen::model::{
+    AddedEffect, EffectPlace, JointKind, LinkId, Robot, Terms, bake_where,
+};
 use rustc_hash::FxHashMap;
 
 /// What an effect at one place adds to the torques of all joints of a robot.
@@ -21,8 +23,22 @@ pub struct RobotEffect {
     joints: usize,
     /// Torques, then their derivatives: for each parameter one row for each joint.
     program: LawProgram,
+    /// What it moves: gravity along three axes, then the zero of each joint; none for a term.
+    moved: Option<LawProgram>,
+    /// Its place among those that move something.
+    order: Order,
     follows_accelerations: bool,
-    is_of_motion: bool,
+    /// How many numbers of the model it depends on.
+    numbers: usize,
+}
+
+/// What moves the model is added in this order, each beside those before it: what turns gravity,
+/// what moves the zero of a joint, joint by joint, and all others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Order {
+    Gravity,
+    Zero(usize),
+    Other,
 }
 
 /// Whether what a law adds is made of accelerations.
@@ -62,6 +78,10 @@ impl RobotEffect {
         let mut rigid = bake_where(robot, |parameter| !numbers.contains(&parameter.name))?;
         rigid.laws.clear();
         rigid.terms = Terms { friction: false, rotor: false, ..rigid.terms };
+        for (gravity, name) in rigid.gravity.iter_mut().zip(GRAVITY_BESIDE) {
+            let more = rigid.dag.symbol(name, SymbolClass::Geometry);
+            *gravity = rigid.dag.add(*gravity, more);
+        }
         match effect.law {
             Law::Term(term) => {
                 let with = Robot { terms: with_term(rigid.terms, term, true), ..rigid.clone() };
@@ -76,9 +96,9 @@ impl RobotEffect {
                     parameters: Vec::new(),
                     place: 0,
                 };
-                rigid.effects = vec![added];
-                attach(&mut rigid, effect, 0).map_err(Cause::Place)?;
-                Self::of_moved(effect, &rigid, at, numbers)
+                let mut moved = Robot { effects: vec![added], ..rigid.clone() };
+                attach(&mut moved, effect, 0).map_err(Cause::Place)?;
+                Self::of_moved(effect, [&moved, &rigid], at, numbers)
             }
             Law::Torque(_) | Law::Measured(_) => Err(Cause::OneJoint(effect.name.clone()).into()),
         }
@@ -96,16 +116,22 @@ impl RobotEffect {
         let entries: Vec<ExprId> =
             first.entries.iter().zip(&second.entries).map(|(&a, &b)| dag.sub(a, b)).collect();
         let joints = entries.len();
-        let program = LawProgram::new(&dag, numbers, first.inputs, entries)?;
-        let follows_accelerations = is_of_accelerations(&effect.law);
-        let (name, parameters) = (effect.name.clone(), Vec::new());
-        let is_of_motion = numbers.is_empty();
-        Ok(Self { name, parameters, joints, program, follows_accelerations, is_of_motion })
+        let program = LawProgram::new(&dag, &with_gravity(numbers), first.inputs, entries)?;
+        Ok(Self {
+            name: effect.name.clone(),
+            parameters: Vec::new(),
+            joints,
+            program,
+            moved: None,
+            order: Order::Other,
+            follows_accelerations: is_of_accelerations(&effect.law),
+            numbers: numbers.len(),
+        })
     }
 
     fn of_moved(
         effect: &Effect,
-        moved: &Robot,
+        [moved, rigid]: [&Robot; 2],
         at: EffectPlace,
         numbers: &[String],
     ) -> Result<Self, Error> {
@@ -130,17 +156,29 @@ impl RobotEffect {
         for parameter in 0..count {
             all.extend(slopes.iter().map(|row| row[parameter]));
         }
-        names.extend_from_slice(numbers);
+        names.extend(with_gravity(numbers));
         let program = LawProgram::new(&dag, &names, inputs, all)?;
+        let moves = moves(&mut dag, [moved, rigid]);
+        let order = match moves.iter().position(|&by| by != dag.zero()) {
+            Some(0..3) => Order::Gravity,
+            Some(place) => Order::Zero(place - 3),
+            None => Order::Other,
+        };
+        let moves = LawProgram::new(&dag, &names, Vec::new(), moves)?;
         let joint = match at {
             EffectPlace::Link(link) => moved.links[link].joint.kind,
             _ => JointKind::Revolute,
         };
-        let parameters = effect.parameters.iter().map(|p| LawParameter::new(p, joint)).collect();
-        let follows_accelerations = is_of_accelerations(&effect.law);
-        let name = effect.name.clone();
-        let is_of_motion = numbers.is_empty();
-        Ok(Self { name, parameters, joints, program, follows_accelerations, is_of_motion })
+        Ok(Self {
+            name: effect.name.clone(),
+            parameters: effect.parameters.iter().map(|p| LawParameter::new(p, joint)).collect(),
+            joints,
+            program,
+            moved: Some(moves),
+            order,
+            follows_accelerations: is_of_accelerations(&effect.law),
+            numbers: numbers.len(),
+        })
     }
 
     /// Whether what the effect adds is made of accelerations.
@@ -150,25 +188,96 @@ impl RobotEffect {
 
     /// Whether what the effect adds is a function of the motion alone: of no number of the model.
     pub fn is_of_motion(&self) -> bool {
-        self.is_of_motion
+        self.numbers == 0
+    }
+
+    /// Whether the effect turns gravity or a joint, and with it what bodies do.
+    pub fn turns_numbers(&self) -> bool {
+        self.order != Order::Other
+    }
+
+    /// What the effect moves that other effects depend on; `numbers` are the values of the numbers
+    /// of the model that were named.
+    pub fn moves(&self, values: &[f64], numbers: &[f64]) -> Moves {
+        let Some(program) = &self.moved else { return Moves::none(self.joints) };
+        let all = [values, &numbers[..self.numbers], &[0.0; 3]].concat();
+        let all: Vec<f64> = program.run(&[], &all, 1).iter().map(|one| one[0]).collect();
+        Moves { gravity: [all[0], all[1], all[2]], zeros: all[3..].to_vec() }
+    }
+
+    fn before(&self, all: &Moves) -> Moves {
+        let before = |order, by: f64| if order < self.order { by } else { 0.0 };
+        let zeros = all.zeros.iter().enumerate();
+        Moves {
+            gravity: all.gravity.map(|by| before(Order::Gravity, by)),
+            zeros: zeros.map(|(joint, by)| before(Order::Zero(joint), *by)).collect(),
+        }
     }
 
     /// What the effect adds to the torques, and the derivative by each parameter. `q`, `qd` and
     /// `qdd` have one column of samples for each joint; `numbers` are the values of the numbers of
-    /// the model that were named.
+    /// the model that were named. Of what moves gravity and zeros it is added beside what comes
+    /// before it: gravity, zeros of joints in their order, then all others, so that effects add up
+    /// to what they do together.
     pub fn torques(
         &self,
         [q, qd, qdd]: [&[&[f64]]; 3],
         values: &[f64],
         numbers: &[f64],
+        beside: &Moves,
     ) -> AddedTorques {
-        let inputs: Vec<&[f64]> = [q, qd, qdd].concat();
+        let beside = self.before(beside);
+        let turn = |(q, zero): (&&[f64], &f64)| q.iter().map(|q| q + zero).collect();
+        let turned: Vec<Vec<f64>> = match beside.zeros.iter().all(|zero| *zero == 0.0) {
+            true => Vec::new(),
+            false => q.iter().zip(&beside.zeros).map(turn).collect(),
+        };
+        let turned: Vec<&[f64]> = turned.iter().map(Vec::as_slice).collect();
+        let stand = if turned.is_empty() { q } else { &turned };
+        let inputs: Vec<&[f64]> = [stand, qd, qdd].concat();
         let samples = q.first().map_or(0, |column| column.len());
-        let mut torque = self.program.run(&inputs, &[values, numbers].concat(), samples);
+        let values = [values, &numbers[..self.numbers], &beside.gravity].concat();
+        let mut torque = self.program.run(&inputs, &values, samples);
         let slopes = torque.split_off(self.joints);
         let gradient = slopes.chunks_exact(self.joints).map(<[Vec<f64>]>::to_vec).collect();
         AddedTorques { torque, gradient }
     }
+}
+
+/// What effects move that other effects depend on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moves {
+    /// Acceleration of free fall in frame 0, along its axes \[m/s^2\].
+    pub gravity: [f64; 3],
+    /// For each joint by how much it stands further than it reads [rad, m].
+    pub zeros: Vec<f64>,
+}
+
+impl Moves {
+    /// Nothing.
+    pub fn none(joints: usize) -> Self {
+        Self { gravity: [0.0; 3], zeros: vec![0.0; joints] }
+    }
+}
+
+/// Acceleration of free fall that other effects add along each axis. No file can name these
+/// symbols: they are no identifiers.
+const GRAVITY_BESIDE: [&str; 3] =
+    ["x of gravity beside", "y of gravity beside", "z of gravity beside"];
+
+fn with_gravity(numbers: &[String]) -> Vec<String> {
+    numbers.iter().cloned().chain(GRAVITY_BESIDE.map(str::to_owned)).collect()
+}
+
+/// By how much a robot that is moved has another gravity, and other zeros of its joints.
+fn moves(dag: &mut Dag, [moved, rigid]: [&Robot; 2]) -> Vec<ExprId> {
+    let zero = |robot: &Robot, link: LinkId| {
+        let joint = &robot.links[link].joint;
+        if joint.kind == JointKind::Prismatic { joint.d } else { joint.theta }
+    };
+    let gravity = moved.gravity.into_iter().zip(rigid.gravity);
+    let zeros = rigid.joints().map(|(link, _)| (zero(moved, link), zero(rigid, link)));
+    gravity.chain(zeros).map(|(a, b)| dag.sub(a, b)).collect()
 }
 
 /// What an effect adds to the torques of all joints.
@@ -182,7 +291,7 @@ pub struct AddedTorques {
 
 /// Inverse dynamics of a robot.
 struct Derived {
-    dag: denavit_codegen::expr::Dag,
+    dag: Dag,
     entries: Vec<ExprId>,
     inputs: Vec<ExprId>,
 }

@@ -4,8 +4,8 @@ use denavit_codegen::derive::{Derivation, Flavour, derive};
 use denavit_codegen::effect::{find, read_model};
 use denavit_codegen::expr::{Floats, evaluate};
 use denavit_codegen::function::FunctionName;
-use denavit_codegen::model::{EffectPlace, Robot};
-use denavit_plants::effect::RobotEffect;
+use denavit_codegen::model::{EffectPlace, LinkId, Robot};
+use denavit_plants::effect::{Moves, RobotEffect};
 use denavit_plants::shipped;
 use std::collections::BTreeMap;
 
@@ -82,7 +82,7 @@ fn neglected_coriolis_torques_are_those_of_the_christoffel_matrix() {
     let found = RobotEffect::new(&robot, effect, EffectPlace::Model, &[]).expect("an effect");
     let motion = motion(6, 5);
     let [q, qd, qdd] = [0, 1, 2].map(|row| slices(&motion[row]));
-    let torque = found.torques([&q, &qd, &qdd], &[], &[]).torque;
+    let torque = found.torques([&q, &qd, &qdd], &[], &[], &Moves::none(q.len())).torque;
     let derivation = derived(&robot, &[FunctionName::CoriolisMatrix]);
     for sample in 0..5 {
         let more = BTreeMap::new();
@@ -119,7 +119,7 @@ fn a_tilted_base_is_gravity_of_another_direction_for_the_masses_of_the_moment() 
     let tilted = self::robot(&file.to_string());
     let motion = motion(6, 4);
     let [q, qd, qdd] = [0, 1, 2].map(|row| slices(&motion[row]));
-    let torque = found.torques([&q, &qd, &qdd], &[a, b], &[heavy]).torque;
+    let torque = found.torques([&q, &qd, &qdd], &[a, b], &[heavy], &Moves::none(q.len())).torque;
     for sample in 0..4 {
         let with = rigid_torques(&tilted, &motion, sample);
         let without = rigid_torques(&upright, &motion, sample);
@@ -151,7 +151,7 @@ fn a_payload_is_a_body_fixed_in_its_link() {
     let found = RobotEffect::new(&robot, effect, EffectPlace::Link(tip), &[]).expect("an effect");
     let motion = motion(6, 4);
     let [q, qd, qdd] = [0, 1, 2].map(|row| slices(&motion[row]));
-    let torque = found.torques([&q, &qd, &qdd], &values, &[]).torque;
+    let torque = found.torques([&q, &qd, &qdd], &values, &[], &Moves::none(q.len())).torque;
     for sample in 0..4 {
         let with = rigid_torques(&loaded, &motion, sample);
         let without = rigid_torques(&robot, &motion, sample);
@@ -177,15 +177,15 @@ fn gradients_of_whole_robots_are_those_of_differences_and_nominal_is_nothing() {
         let effect = find(name).expect("shipped");
         let found = RobotEffect::new(&robot, effect, at, &[]).expect("an effect");
         let nominal: Vec<f64> = found.parameters.iter().map(|p| p.nominal.unwrap_or(0.4)).collect();
-        let nothing = found.torques([&q, &qd, &qdd], &nominal, &[]).torque;
+        let nothing = found.torques([&q, &qd, &qdd], &nominal, &[], &Moves::none(q.len())).torque;
         assert!(nothing.iter().flatten().all(|torque| torque.abs() < 1e-10), "{name}");
         let values: Vec<f64> = (0..nominal.len()).map(|i| 0.2 + 0.05 * i as f64).collect();
-        let gradient = found.torques([&q, &qd, &qdd], &values, &[]).gradient;
+        let gradient = found.torques([&q, &qd, &qdd], &values, &[], &Moves::none(q.len())).gradient;
         for parameter in 0..values.len() {
             let side = |step: f64| {
                 let mut moved = values.clone();
                 moved[parameter] += step;
-                found.torques([&q, &qd, &qdd], &moved, &[]).torque
+                found.torques([&q, &qd, &qdd], &moved, &[], &Moves::none(q.len())).torque
             };
             let (above, below) = (side(1e-5), side(-1e-5));
             for joint in 0..6 {
@@ -196,6 +196,54 @@ fn gradients_of_whole_robots_are_those_of_differences_and_nominal_is_nothing() {
                     assert!((difference - slope).abs() < 1e-5 * scale, "{name}: {parameter}");
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn effects_beside_each_other_add_up_to_what_they_do_together() {
+    let effects = r#"[{"effect": "base_tilt", "at": "model", "parameters": {"about_x": 0.3, "about_y": -0.2}},
+        {"effect": "joint_zero", "at": {"link": "second"}, "parameters": {"dq": 0.4}},
+        {"effect": "joint_zero", "at": {"link": "third"}, "parameters": {"dq": -0.3}},
+        {"effect": "payload_point", "at": {"link": "third"},
+        "parameters": {"mass": 2.5, "cx": 0.1, "cy": 0.05, "cz": -0.2}}]"#;
+    let plain = robot(&text("puma560"));
+    let links: Vec<LinkId> = plain.joints().map(|(link, _)| link).collect();
+    let name = |joint: usize| &plain.links[links[joint]].name;
+    let effects = effects.replace("second", name(1)).replace("third", name(2));
+    let together = with_effects("puma560", &effects);
+    let motion = motion(6, 4);
+    let [q, qd, qdd] = [0, 1, 2].map(|row| slices(&motion[row]));
+    let all: Vec<(RobotEffect, Vec<f64>)> = [
+        ("base_tilt", EffectPlace::Model, vec![0.3, -0.2]),
+        ("joint_zero", EffectPlace::Link(links[1]), vec![0.4]),
+        ("joint_zero", EffectPlace::Link(links[2]), vec![-0.3]),
+        ("payload_point", EffectPlace::Link(links[2]), vec![2.5, 0.1, 0.05, -0.2]),
+    ]
+    .into_iter()
+    .map(|(effect, at, values)| {
+        let effect = RobotEffect::new(&plain, find(effect).expect("shipped"), at, &[]);
+        (effect.expect("an effect"), values)
+    })
+    .collect();
+    let mut beside = Moves::none(6);
+    for (effect, values) in &all {
+        let own = effect.moves(values, &[]);
+        let both = beside.gravity.iter_mut().chain(&mut beside.zeros);
+        both.zip(own.gravity.iter().chain(&own.zeros)).for_each(|(sum, more)| *sum += more);
+    }
+    let mut sum = vec![vec![0.0; 4]; 6];
+    for (effect, values) in &all {
+        let torque = effect.torques([&q, &qd, &qdd], values, &[], &beside).torque;
+        let both = sum.iter_mut().flatten().zip(torque.iter().flatten());
+        both.for_each(|(sum, more)| *sum += more);
+    }
+    assert_eq!(beside.zeros, [0.0, 0.4, -0.3, 0.0, 0.0, 0.0]);
+    for sample in 0..4 {
+        let with = rigid_torques(&together, &motion, sample);
+        let without = rigid_torques(&plain, &motion, sample);
+        for joint in 0..6 {
+            assert_near(sum[joint][sample], with[joint] - without[joint], "together");
         }
     }
 }
@@ -218,7 +266,7 @@ fn slopes_by_parameters_that_are_called_linear_do_not_depend_on_these() {
         let [slopes, others] = [0.0, 0.3].map(|more| {
             let of = |linear: bool| if linear { 0.2 + more } else { 0.2 };
             let values: Vec<f64> = found.parameters.iter().map(|one| of(one.linear)).collect();
-            found.torques([&q, &qd, &qdd], &values, &[]).gradient
+            found.torques([&q, &qd, &qdd], &values, &[], &Moves::none(q.len())).gradient
         });
         for (place, _) in found.parameters.iter().enumerate().filter(|(_, one)| one.linear) {
             let both = slopes[place].iter().flatten().zip(others[place].iter().flatten());

@@ -59,10 +59,9 @@ impl ModelTorques {
         Effects { candidates, taken }: Effects<'_>,
     ) -> Self {
         let laws = || taken.iter().map(|one| (&candidates[one.candidate].law, &one.values));
-        let moves = |this: &Self| -> Vec<Moves> {
-            laws().filter_map(|(law, values)| law.moves(values, &this.numbers)).collect()
-        };
-        for own in moves(&self) {
+        let moves: Vec<Moves> =
+            laws().filter_map(|(law, values)| law.moves(values, &self.numbers)).collect();
+        for own in &moves {
             let all = self.beside.moves.gravity.iter_mut().chain(&mut self.beside.moves.zeros);
             all.zip(own.gravity.iter().chain(&own.zeros)).for_each(|(sum, more)| *sum += more);
         }

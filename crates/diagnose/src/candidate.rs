@@ -157,34 +157,5 @@ fn values_of(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_position_that_may_be_anywhere_is_looked_for_where_the_joint_moves() {
-        let of = |unit: &str, nominal, bounds, linear| LawParameter {
-            name: String::new(),
-            unit: unit.to_owned(),
-            nominal,
-            bounds,
-            start: vec![5.0],
-            linear,
-        };
-        let open = [f64::NEG_INFINITY, f64::INFINITY];
-        let stiffness = of("N m/rad", Some(0.0), [0.0, f64::INFINITY], true);
-        let stiffness = LawParameter { start: Vec::new(), ..stiffness };
-        let place = of("rad", None, open, false);
-        let within = starts(&[stiffness.clone(), place.clone()], Some([1.0, 3.0]), None);
-        assert_eq!(within.len(), PLACES.len());
-        assert!(within.iter().all(|one| one[0] == (0.0, None)));
-        assert!(within.iter().all(|one| 1.0 < one[1].0 && one[1].0 < 3.0));
-        let only = |parameters: &[LawParameter], range| {
-            let all = starts(parameters, range, None).into_iter();
-            let values = |one: Start| one.into_iter().map(|(value, _)| value).collect();
-            all.map(values).collect::<Vec<Vec<f64>>>()
-        };
-        assert_eq!(only(&[stiffness.clone(), place], None), [[0.0, 5.0]]);
-        let bounded = of("rad", None, [0.0, 9.0], false);
-        assert_eq!(only(&[stiffness, bounded], Some([1.0, 3.0])), [[0.0, 5.0]]);
-    }
-}
+#[path = "../tests/unit/candidate.rs"]
+mod tests;

@@ -100,6 +100,7 @@ impl Search<'_> {
     /// What was found without the effect in one place, which is no candidate then. Others are
     /// exchanged, and none is added: what did not repeat is like many an effect.
     pub(super) fn drop(&mut self, found: &mut Found, place: usize) {
+        self.may_move = false; // no search begins again after this one
         let mut parts = found.after.parts.clone();
         let dropped = parts.remove(place).placed.candidate;
         self.screen[dropped].clear();

@@ -11,10 +11,11 @@ use std::path::Path;
 const CASES: [u64; 11] = [14, 42, 3, 17, 34, 166, 22, 30, 41, 44, 45];
 
 /// Cases of runs that were reported, whose answers were wrong once, among them: a limit of torques
-/// that is met in the log for training alone; Coulomb friction of a drive that sticks; a torque
-/// sensor that does not run true; drives that rest between two motions; drives that hold at rest
-/// more than they slide with, or no more.
-const MENDED: [u64; 8] = [3467, 5345, 4314, 3163, 5356, 3174, 6226, 10005];
+/// that is met in the log for training alone; Coulomb friction of a drive that sticks; drives that
+/// rest between two motions; drives that hold at rest more than they slide with, or no more. 5356
+/// was one, a friction that no catalogue has: five laws together have 7 % of the torque left of it,
+/// and one of them is now large enough beside that for a name (`partly_explained`).
+const MENDED: [u64; 7] = [3467, 5345, 4314, 3163, 3174, 6226, 10005];
 
 fn diagnosed(files: Files<'_>) -> Answer {
     let denavit = Path::new(env!("CARGO_BIN_EXE_denavit"));

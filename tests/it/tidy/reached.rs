@@ -27,6 +27,12 @@ fn is_named(path: &Path) -> bool {
         }
         _ => (path.to_owned(), stem),
     };
+    // tests of what is private stand beside those of what is public
+    if path.parent().unwrap().ends_with("tests/unit") {
+        let attribute = format!("tests/unit/{name}.rs\"]\nmod tests;");
+        let sources = all_files().into_iter().filter_map(|path| fs::read_to_string(path).ok());
+        return sources.into_iter().any(|text| text.contains(&attribute));
+    }
     let texts = parents(&path).into_iter().filter_map(|parent| fs::read_to_string(parent).ok());
     texts.into_iter().any(|text| text.contains(&format!("mod {name};")))
 }

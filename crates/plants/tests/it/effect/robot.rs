@@ -202,7 +202,8 @@ fn gradients_of_whole_robots_are_those_of_differences_and_nominal_is_nothing() {
 
 #[test]
 fn effects_beside_each_other_add_up_to_what_they_do_together() {
-    let effects = r#"[{"effect": "base_tilt", "at": "model", "parameters": {"about_x": 0.3, "about_y": -0.2}},
+    let effects = r#"[{"effect": "base_tilt", "at": "model",
+        "parameters": {"about_x": 0.3, "about_y": -0.2}},
         {"effect": "joint_zero", "at": {"link": "second"}, "parameters": {"dq": 0.4}},
         {"effect": "joint_zero", "at": {"link": "third"}, "parameters": {"dq": -0.3}},
         {"effect": "payload_point", "at": {"link": "third"},

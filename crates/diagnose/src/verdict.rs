@@ -218,6 +218,12 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
         let why = format!("no motion of held-out logs has {} act", unjudged.join(", "));
         return (Verdict::PartlyExplained, vec![why]);
     }
+    let Gaps { before, after, .. } = &diagnosis.held_out;
+    if after.all > before.all {
+        let [before, after] = [before, after].map(|gap| percent(gap.all));
+        let why = format!("the torque mismatch of held-out logs grows, from {before} to {after}");
+        return (Verdict::PartlyExplained, vec![why]);
+    }
     match diagnosis.held_out.closed {
         Some(closed) if closed < policy::SAME => {
             let closed = percent(closed.max(0.0));

@@ -22,6 +22,7 @@ impl Search<'_> {
         };
         let mut rivals = unseen(&now);
         let mut exchanges = 0;
+        // The search begins again with what was weighed by other numbers.
         while now.elsewhere.is_none() {
             let may_exchange = exchanges < MOST_EXCHANGES * (1 + now.parts.len());
             let Some(place) = rivals.iter().position(Option::is_none) else {

@@ -219,8 +219,8 @@ impl EffectLaw {
         self.channel.as_ref().is_some_and(|law| law.is_gain)
     }
 
-    /// What a torque is multiplied by in its log, sample by sample; none of laws of another channel,
-    /// of time, and of what is between the drive and the joint.
+    /// What a torque is multiplied by in its log, sample by sample; none of laws of another
+    /// channel, of time, and of what is between the drive and the joint.
     pub fn factor(&self, samples: &JointSamples<'_>, values: &[f64]) -> Option<Vec<f64>> {
         let does_more =
             |law: &&ChannelLaw| law.is_inverse || law.is_timing || law.transmission.is_some();

@@ -219,7 +219,7 @@ fn searched<'s>(
     let (mut begun, mut moves, mut steps) = (Vec::<Placed>::new(), 0, Vec::new());
     let (mut screen, mut beside) = (Vec::new(), Vec::new());
     loop {
-        let weighing = Weighing::new(sets.clone(), own, &z, &beside);
+        let weighing = Weighing::new(sets.clone(), own, [&z, &z], &beside);
         let watched = &mut |share| watch(&Progress::Evaluated(share));
         let mut search = Search::new(weighing, [setting.given.len(), most], screen, watched);
         search.floor.clone_from(&floor);
@@ -254,7 +254,8 @@ fn with_rests<'a>(
 /// The model's own numbers, in their deviations, as all logs have them where nothing is missing.
 fn null(sets: &[&Data<'_>], given: Effects<'_>) -> Vec<f64> {
     let columns = sets[0].columns.len();
-    let weighing = Weighing::new(sets.to_vec(), given, &vec![0.0; columns], &[]);
+    let none = vec![0.0; columns];
+    let weighing = Weighing::new(sets.to_vec(), given, [&none, &none], &[]);
     let weighed = weighing.base.weigh(&[], None, policy::ROUNDS[1]);
     weighed.own[..columns].to_vec()
 }

@@ -243,7 +243,7 @@ impl Ambiguity<'_> {
                 data.torque[stretch.range()].copy_from_slice(&computed);
             }
         }
-        let weighing = Weighing::new(vec![&data], effects, self.z, &self.others);
+        let weighing = Weighing::new(vec![&data], effects, [self.z, self.z], &self.others);
         let names = self.names.iter().map(|one| weighing.part(one)).collect();
         let search = Search::new(weighing, [self.candidates.len(), 0], Vec::new(), &mut |_| true);
         Some(asked(&mut Seen { search, data: &data, names, floor: self.floor }))

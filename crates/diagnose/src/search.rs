@@ -315,7 +315,7 @@ impl<'a> Search<'a> {
         }
         for _ in 0..policy::LINEARISED {
             let z = weighing.numbers(&one);
-            let other = weighing.beside(&z, &one.all_taken(weighing.candidates));
+            let other = weighing.in_same_data(&z, &one.all_taken(weighing.candidates));
             let next = self.settled_in(other, &one);
             if next.posterior < one.posterior + policy::NAMED {
                 break;

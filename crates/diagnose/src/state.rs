@@ -68,7 +68,7 @@ impl<'a> Setting<'a> {
         let z = found.elsewhere.as_deref().unwrap_or(z);
         let taken = found.all_taken(self.candidates);
         let effects = self.effects(&self.given);
-        let mut weighing = Weighing::new(vec![self.data.train], effects, z, &taken);
+        let mut weighing = Weighing::new(vec![self.data.train], effects, [z, z], &taken);
         let parts = found.parts.iter().map(|part| weighing.part(&part.placed));
         let parts: Vec<Part> = parts.collect();
         weighing.base = weighing.base_beside(&parts);
@@ -105,7 +105,7 @@ impl<'a> Setting<'a> {
 
     /// Held-out logs alone, in which effects are weighed.
     pub(super) fn judging(&self, z: &[f64]) -> Weighing<'_> {
-        Weighing::new(vec![self.data.held_out], self.effects(&self.given), z, &[])
+        Weighing::new(vec![self.data.held_out], self.effects(&self.given), [z, z], &[])
     }
 
     /// The deviations of an effect that was found. Another law than what is there has other values

@@ -45,6 +45,8 @@ pub(super) struct Weighing<'a> {
     own: Vec<Spectrum>,
     /// The model's own numbers that torques are those of, in their deviations.
     pub(super) z: Vec<f64>,
+    /// The same, of torques above the frequency up to which columns of accelerations count.
+    fast: Vec<f64>,
     /// Columns of accelerations count below this frequency \[Hz\].
     pub(super) driven_hz: f64,
 }
@@ -55,7 +57,7 @@ impl<'a> Weighing<'a> {
     pub(super) fn new(
         sets: Vec<&'a Data<'a>>,
         effects: Effects<'a>,
-        z: &[f64],
+        [z, fast]: [&[f64]; 2],
         found: &[Taken],
     ) -> Self {
         let cutoff_hz = sets[0].signals.first().map_or(0.0, |signals| signals.torque_hz);
@@ -65,13 +67,14 @@ impl<'a> Weighing<'a> {
         let present = [effects.taken, found].concat();
         let beside = Effects { taken: &present, ..effects };
         let torques = sets.iter().map(|data| data.model_torques(z, beside)).collect();
-        let left: Vec<Vec<f64>> = sets.iter().map(|data| data.residual_of(z)).collect();
+        let left: Vec<Vec<f64>> = sets.iter().map(|data| data.residual_of(fast)).collect();
         let rows: Vec<&[f64]> = left.iter().map(Vec::as_slice).collect();
         let mut residual = spectra.of_rows(&sets, &rows, f64::INFINITY);
         let mut weighing = Self {
             base: Base::new(spectra.layout.clone(), residual.clone(), &[]),
             own: Vec::new(),
             z: z.to_vec(),
+            fast: fast.to_vec(),
             sets,
             candidates: effects.candidates,
             given: effects.taken,
@@ -82,7 +85,7 @@ impl<'a> Weighing<'a> {
         };
         let mut own = weighing.own();
         // What z does is known at all frequencies, and how much of it up to some.
-        for (column, factor) in own.iter().zip(z) {
+        for (column, factor) in own.iter().zip(fast) {
             add(&mut residual, column, *factor);
         }
         for taken in effects.taken {
@@ -126,7 +129,14 @@ impl<'a> Weighing<'a> {
     /// The same with other numbers, beside other effects.
     pub(super) fn beside(&self, z: &[f64], found: &[Taken]) -> Self {
         let effects = Effects { candidates: self.candidates, taken: self.given };
-        Self::new(self.sets.clone(), effects, z, found)
+        Self::new(self.sets.clone(), effects, [z, z], found)
+    }
+
+    /// The same with other numbers, beside other effects, in the same data: what numbers do above
+    /// the driven frequency stays as it is, so that hypotheses can be compared.
+    pub(super) fn in_same_data(&self, z: &[f64], found: &[Taken]) -> Self {
+        let effects = Effects { candidates: self.candidates, taken: self.given };
+        Self::new(self.sets.clone(), effects, [z, &self.fast], found)
     }
 
     /// The model's own numbers by a hypothesis, in their deviations.
@@ -168,7 +178,7 @@ impl<'a> Weighing<'a> {
                 let column = std::mem::take(&mut own[time][joint.0]);
                 let whole = self.column(time, f64::INFINITY).swap_remove(joint.0);
                 let unseen =
-                    whole.iter().zip(&column).map(|(whole, own)| self.z[time] * (whole - own));
+                    whole.iter().zip(&column).map(|(whole, own)| self.fast[time] * (whole - own));
                 data[joint.0].iter_mut().zip(unseen).for_each(|(row, unseen)| *row += unseen);
             }
         }

@@ -59,7 +59,8 @@ pub struct FoundEffect {
     pub(super) trained: f64,
     /// The same in held-out logs.
     pub(super) judged: f64,
-    /// The share of what can be explained that is open again without it, on held-out logs.
+    /// The share of what can be explained that is open again without it, on held-out logs; 0 where
+    /// nothing can.
     pub share: f64,
     /// By how much more likely held-out logs are with it, as those that were fitted have it: a log
     /// of odds.
@@ -125,8 +126,9 @@ pub(super) fn found_effects(
     let known = |row: usize| held_out.weights[row];
     let gap = |state: &State| Gap::new(held_out, &state.residual.held_out, &known).all;
     let floor = Gap::of_floor(held_out, setting.floors.held_out, &known).all;
-    // Where all was below the floor already, of what the effects closed.
-    let whole = (gap(before) - floor).max(gap(before) - gap(after)).max(f64::MIN_POSITIVE);
+    // Where all was below the floor already, of what the effects closed, if they did.
+    let whole = (gap(before) - floor).max(gap(before) - gap(after));
+    let share = |part: f64| if whole > 0.0 { part / whole } else { 0.0 };
     let given = setting.given.len();
     let all = &found.after;
     let predicted =
@@ -145,7 +147,7 @@ pub(super) fn found_effects(
             size: search.size(all, place),
             trained: search.weighing.size(taken),
             judged: judging.size(taken),
-            share: (gap(&reopened) - gap(after)) / whole,
+            share: share(gap(&reopened) - gap(after)),
             log_predicted: with_all - predicted(&reopened, &without),
             change_in_time: search.change_in_time(all, place),
             stands_for: None,

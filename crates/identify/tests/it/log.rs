@@ -102,6 +102,12 @@ fn missing_columns_are_all_named_at_once() {
     let faults = made.read().unwrap_err();
     let missing = faults.iter().filter(|one| matches!(one, LogFault::MissingColumn { .. }));
     assert_eq!(missing.count(), 2);
+    // what is something else of the robot is not what was meant
+    let mut other = Made::new();
+    other.header[1] = format!("ref_{}", names[0]);
+    let column = format!("q_{}", names[0]);
+    let missing = LogFault::MissingColumn { column, nearest: None };
+    assert_eq!(other.read().unwrap_err()[0], missing);
     // A mapping brings them back, scaled.
     let (a, b) = (&names[0], &names[1]);
     let map =

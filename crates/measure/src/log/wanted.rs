@@ -148,13 +148,15 @@ fn unknown_names(all: &[Ours], mapping: &ColumnMapping) -> Vec<LogFault> {
     unknown.map(fault).collect()
 }
 
-/// The column that is meant where none is found: by its name, or by what the project calls it.
-fn meant(log: &Log<'_>, name: &str) -> Option<String> {
+/// The column that is meant where none is found: by its name, or by what the project calls it. One
+/// that is another of ours is not.
+fn meant(log: &Log<'_>, all: &[Ours], name: &str) -> Option<String> {
     let names = log.columns.iter().flat_map(|column| {
         let known = column.known.as_ref().map(|known| known.name.as_str());
         known.into_iter().chain([column.name.as_str()])
     });
-    let near = nearest(name, names)?;
+    let is_other = |name: &&str| all.iter().any(|ours| ours.name == *name);
+    let near = nearest(name, names.filter(|name| !is_other(name)))?;
     let is_it = |column: &&Column| {
         column.name == near || column.known.as_ref().is_some_and(|known| known.name == near)
     };
@@ -209,7 +211,7 @@ impl Wanted {
                     )));
                 }
                 Found::Nowhere if is_needed || is_mapped => {
-                    let nearest = meant(log, &source.column);
+                    let nearest = meant(log, &all, &source.column);
                     faults.push(LogFault::MissingColumn { column: source.column, nearest });
                 }
                 Found::Nowhere => {}
@@ -218,7 +220,7 @@ impl Wanted {
         for (pattern, column, is_there) in patterns {
             let is_needed = all.iter().any(|ours| ours.pattern == pattern && ours.is_needed);
             if !is_there && !is_needed {
-                let nearest = meant(log, &column);
+                let nearest = meant(log, &all, &column);
                 faults.push(LogFault::MissingColumn { column, nearest });
             }
         }

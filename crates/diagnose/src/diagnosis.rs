@@ -253,11 +253,10 @@ fn with_rests<'a>(
 
 /// The model's own numbers, in their deviations, as all logs have them where nothing is missing.
 fn null(sets: &[&Data<'_>], given: Effects<'_>) -> Vec<f64> {
-    let columns = sets[0].columns.len();
-    let none = vec![0.0; columns];
+    let none = vec![0.0; sets[0].columns.len()];
     let weighing = Weighing::new(sets.to_vec(), given, [&none, &none], &[]);
     let weighed = weighing.base.weigh(&[], None, policy::ROUNDS[1]);
-    weighed.own[..columns].to_vec()
+    weighed.own[..none.len()].to_vec()
 }
 
 /// What two states say of the logs, before and after effects were found.

@@ -89,11 +89,8 @@ impl FoundEffect {
     /// ask for nothing of it, so that the others alone show it.
     fn is_idle(&self, candidates: &[Candidate]) -> bool {
         let acts = self.judged > policy::WORTH;
-        let least = if acts && !candidates[self.candidate].is_standard() {
-            policy::NAMED
-        } else {
-            -policy::NAMED
-        };
+        let is_asked = acts && !candidates[self.candidate].is_standard();
+        let least = if is_asked { policy::NAMED } else { -policy::NAMED };
         self.log_predicted < least || self.trained < policy::WORTH
     }
 }

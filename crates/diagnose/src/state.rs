@@ -149,8 +149,7 @@ impl<'a> Setting<'a> {
 
     /// What the model as it is given leaves of a set of logs.
     pub(super) fn as_given(&self, data: &Data<'_>) -> Vec<f64> {
-        let z = vec![0.0; data.columns.len()];
-        let given = self.effects(&self.given);
+        let (z, given) = (vec![0.0; data.columns.len()], self.effects(&self.given));
         data.left(given, &z, &data.model_torques(&z, given))
     }
 }

@@ -45,15 +45,15 @@ pub(super) struct Weighing<'a> {
     own: Vec<Spectrum>,
     /// The model's own numbers that torques are those of, in their deviations.
     pub(super) z: Vec<f64>,
-    /// The same, of torques above the frequency up to which columns of accelerations count.
+    /// Those by which torques above the driven frequency are known.
     fast: Vec<f64>,
     /// Columns of accelerations count below this frequency \[Hz\].
     pub(super) driven_hz: f64,
 }
 
 impl<'a> Weighing<'a> {
-    /// Sets of logs with the torques of the model's own numbers at z, and the effects that it has;
-    /// laws are evaluated beside these and what was found.
+    /// Sets of logs with the torques of the model's own numbers at z, those above the driven
+    /// frequency at `fast`, and the effects that it has; laws are beside these and what was found.
     pub(super) fn new(
         sets: Vec<&'a Data<'a>>,
         effects: Effects<'a>,
@@ -84,7 +84,7 @@ impl<'a> Weighing<'a> {
             driven_hz,
         };
         let mut own = weighing.own();
-        // What z does is known at all frequencies, and how much of it up to some.
+        // What numbers do is known at all frequencies, and how much of it up to some.
         for (column, factor) in own.iter().zip(fast) {
             add(&mut residual, column, *factor);
         }
@@ -132,8 +132,8 @@ impl<'a> Weighing<'a> {
         Self::new(self.sets.clone(), effects, [z, z], found)
     }
 
-    /// The same with other numbers, beside other effects, in the same data: what numbers do above
-    /// the driven frequency stays as it is, so that hypotheses can be compared.
+    /// The same in the same data, so that hypotheses can be compared: what numbers do above the
+    /// driven frequency stays as it is.
     pub(super) fn in_same_data(&self, z: &[f64], found: &[Taken]) -> Self {
         let effects = Effects { candidates: self.candidates, taken: self.given };
         Self::new(self.sets.clone(), effects, [z, &self.fast], found)
@@ -480,3 +480,7 @@ fn range(sets: &[&Data<'_>], joint: JointIndex) -> [f64; 2] {
         sets.iter().flat_map(|data| &data.signals).flat_map(|signals| signals.q[joint.0].iter());
     all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &q| [low.min(q), high.max(q)])
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/weighing.rs"]
+mod tests;

@@ -84,10 +84,11 @@ pub(super) fn starts(
     parameters: &[LawParameter],
     range: Option<[f64; 2]>,
     largest: Option<f64>,
+    scales_torque: bool,
 ) -> Vec<Start> {
     let mut all: Vec<Start> = vec![Vec::new()];
     for parameter in parameters {
-        let values = values_of(parameter, range, largest);
+        let values = values_of(parameter, range, largest, scales_torque);
         let longer = |start: &Start| -> Vec<Start> {
             values.iter().map(|own| [start.as_slice(), &[*own]].concat()).collect()
         };
@@ -103,6 +104,7 @@ fn values_of(
     parameter: &LawParameter,
     range: Option<[f64; 2]>,
     largest: Option<f64>,
+    scales_torque: bool,
 ) -> Vec<(f64, Option<f64>)> {
     let [low, high] = parameter.bounds;
     let is_position = ["rad", "m"].contains(&parameter.unit.as_str());
@@ -121,18 +123,12 @@ fn values_of(
         (nominal, ..) if parameter.start.is_empty() => vec![nominal.unwrap_or(0.0)],
         _ => parameter.start.clone(),
     };
-    let values: Vec<f64> = match range.filter(|_| PER_POSITION.contains(&parameter.unit.as_str())) {
-        // of less than that of a period a law that repeats could be any function
-        Some([low, high]) => {
-            let least = policy::PERIODS * TAU / (high - low);
-            let has_enough = |value: &f64| value.abs() >= least;
-            match values.iter().any(has_enough) {
-                true => values.into_iter().filter(has_enough).collect(),
-                false => values,
-            }
-        }
-        None => values,
-    };
+    // of less than that of a period a law that repeats could be any function
+    let repeats = PER_POSITION.contains(&parameter.unit.as_str()) && !scales_torque;
+    let period = range.filter(|_| repeats).map_or(f64::INFINITY, |[low, high]| high - low);
+    let has_enough = |value: &f64| value.abs() * period >= policy::PERIODS * TAU;
+    let enough: Vec<f64> = values.iter().copied().filter(has_enough).collect();
+    let values = if enough.is_empty() { values } else { enough };
     let span = range.map_or(0.0, |[low, high]| high - low);
     let alone = |value: f64| match (is_position, value == 0.0) {
         (true, _) => policy::LENGTH,

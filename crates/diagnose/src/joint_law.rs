@@ -227,8 +227,12 @@ impl Law for JointLaw {
         }
     }
 
-    fn scales_torque(&self) -> bool {
+    fn is_gain(&self) -> bool {
         self.acts == Acts::Torque && self.law.is_gain()
+    }
+
+    fn scales_torque(&self) -> bool {
+        self.acts == Acts::Torque && self.law.scales_torque()
     }
 
     fn is_of_motion(&self) -> bool {

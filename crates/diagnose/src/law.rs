@@ -174,6 +174,11 @@ pub trait Law {
 
     /// Whether it is in proportion to all that the model gives its joint: friction is known beyond
     /// these frequencies as well.
+    fn is_gain(&self) -> bool {
+        false
+    }
+
+    /// Whether a torque is multiplied in its log: at the same position that has both signs.
     fn scales_torque(&self) -> bool {
         false
     }

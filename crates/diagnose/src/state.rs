@@ -80,14 +80,9 @@ impl<'a> Setting<'a> {
     fn fitted_state(&self, weighing: &Weighing<'_>, fitted: &Hypothesis) -> State {
         let z = fitted.weighed.own[..self.data.train.columns.len()].to_vec();
         let mut taken = weighing.given(&fitted.weighed.own);
-        let mut deviations: Vec<Vec<f64>> = self
-            .given
-            .iter()
-            .map(|one| {
-                let beliefs = self.candidates[one.candidate].law.beliefs();
-                beliefs.iter().map(|belief| belief.std).collect()
-            })
-            .collect();
+        let beliefs = self.given.iter().map(|one| self.candidates[one.candidate].law.beliefs());
+        let of_given = beliefs.map(|all| all.iter().map(|belief| belief.std).collect());
+        let mut deviations: Vec<Vec<f64>> = of_given.collect();
         for place in 0..fitted.parts.len() {
             taken.push(fitted.taken(place, self.candidates));
             deviations.push(fitted.deviations(place));

@@ -233,7 +233,7 @@ impl<'a> Weighing<'a> {
         torques: &[Vec<ModelTorques>],
     ) -> (Spectrum, Vec<Spectrum>) {
         let law = self.candidates[taken.candidate].law.as_ref();
-        if !law.scales_torque() {
+        if !law.is_gain() {
             let up_to_hz = self.up_to(law.follows_accelerations());
             let rows = self.in_rows(torques, &|motion| law.response(motion, &taken.values));
             return self.spectra.of_response(&self.sets, &rows, up_to_hz);
@@ -323,7 +323,7 @@ impl<'a> Weighing<'a> {
     pub(super) fn starts(&self, candidate: &Candidate) -> Vec<Start> {
         let range = candidate.joint.map(|joint| range(&self.sets, joint));
         let largest = candidate.joint.and_then(|joint| largest(&self.sets, joint));
-        starts(candidate.law.parameters(), range, largest)
+        starts(candidate.law.parameters(), range, largest, candidate.law.scales_torque())
     }
 
     /// An effect where it is placed, with its terms.

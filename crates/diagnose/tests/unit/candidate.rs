@@ -16,12 +16,12 @@ fn a_position_that_may_be_anywhere_is_looked_for_where_the_joint_moves() {
     let stiffness = of("N m/rad", Some(0.0), [0.0, f64::INFINITY], true);
     let stiffness = LawParameter { start: Vec::new(), ..stiffness };
     let place = of("rad", None, open, false);
-    let within = starts(&[stiffness.clone(), place.clone()], Some([1.0, 3.0]), None);
+    let within = starts(&[stiffness.clone(), place.clone()], Some([1.0, 3.0]), None, false);
     assert_eq!(within.len(), PLACES.len());
     assert!(within.iter().all(|one| one[0] == (0.0, None)));
     assert!(within.iter().all(|one| 1.0 < one[1].0 && one[1].0 < 3.0));
     let only = |parameters: &[LawParameter], range| {
-        let all = starts(parameters, range, None).into_iter();
+        let all = starts(parameters, range, None, false).into_iter();
         let values = |one: Start| one.into_iter().map(|(value, _)| value).collect();
         all.map(values).collect::<Vec<Vec<f64>>>()
     };

@@ -3,7 +3,7 @@
 //! Their parameters become parameters of the robot, `fs_stribeck_knee`, so that everything that is
 //! derived, baked, emitted or typeset has them as it has friction and masses.
 
-use super::{Effect, EffectSite, Law, ModelTerm, Property, find};
+use super::{Effect, EffectSite, Law, ModelTerm, Property, beyond, find};
 use crate::expr::text::nearest;
 use crate::expr::{Dag, ExprId, Symbol, SymbolClass, import};
 use crate::model::json;
@@ -12,7 +12,7 @@ use crate::model::{
     JointVariables, LawState, Limits, Link, LinkId, ModelError, Parameter, Report, Robot, Role,
     SpringLaw, SpringSide, Terms, Tree, read, read_estimated,
 };
-use crate::number::Rational;
+use crate::number::to_f64;
 
 /// Reads a model file with the effects that it names: those of `own`, then the shipped ones.
 /// `file` is the file's name, for messages alone.
@@ -163,15 +163,10 @@ fn values_at_fault(robot: &Robot, effect: &Effect, added: &AddedEffect) -> Vec<C
             faults.push(Cause::NotOfEffect(effect.name.clone(), name.clone(), hint));
             continue;
         };
-        let [low, high] = &parameter.bounds;
         let Some(value) = robot.dag.as_constant(*value) else { continue };
-        let below = low.as_ref().is_some_and(|low| value < low);
-        if below || high.as_ref().is_some_and(|high| value > high) {
-            let end = |end: &Option<Rational>| {
-                end.as_ref().map_or_else(|| "null".to_owned(), ToString::to_string)
-            };
-            let name = Some(format!("{name} of {}", effect.name));
-            faults.push(Cause::OutOfBounds(name, end(low), end(high)));
+        if let Some(beyond) = beyond(value, &parameter.bounds) {
+            let of = Some([name.clone(), effect.name.clone()]);
+            faults.push(Cause::OutOfBounds(of, to_f64(value), beyond));
         }
     }
     faults

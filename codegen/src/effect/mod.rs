@@ -26,7 +26,7 @@ pub use spelling::JointUnit;
 pub use crate::model::SpringSide;
 
 use crate::expr::{Dag, ExprId, free_symbols};
-use crate::number::Rational;
+use crate::number::{Rational, to_f64};
 use std::borrow::Cow;
 
 /// The tag of a file of an effect.
@@ -408,6 +408,13 @@ impl Effect {
         let id = self.dag.find_symbol(name)?;
         Some(self.dag.symbol_expr(id))
     }
+}
+
+/// Which end of its bounds a value is beyond, in words; none if it is within.
+fn beyond(value: &Rational, [low, high]: &[Option<Rational>; 2]) -> Option<String> {
+    let below = low.as_ref().filter(|low| value < low).map(|low| format!("below {}", to_f64(low)));
+    let above = || high.as_ref().filter(|high| value > high);
+    below.or_else(|| above().map(|high| format!("above {}", to_f64(high))))
 }
 
 #[cfg(test)]

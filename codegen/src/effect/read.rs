@@ -5,7 +5,7 @@ use super::linear::{depends, linear};
 use super::spelling::JointUnit;
 use super::{
     Confusion, Effect, EffectKind, EffectParameter, EffectSite, EffectState, FORMAT, Law, Measured,
-    Occurrence, Property, Transmission,
+    Occurrence, Property, Transmission, beyond,
 };
 use crate::expr::{Dag, ExprId, SymbolClass, substitute};
 use crate::model::check::Scope;
@@ -15,7 +15,7 @@ use crate::model::json::Value;
 use crate::model::reader::{Fields, Node, Word, read_document};
 use crate::model::spelling::{is_identifier, reserved_by};
 use crate::model::{Cause, Dimension, JointKind, ModelError, Report};
-use crate::number::Rational;
+use crate::number::{Rational, to_f64};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
 
@@ -222,13 +222,8 @@ impl Reading<'_> {
     }
 
     fn inside(&mut self, value: &Rational, bounds: &[Option<Rational>; 2], at: usize) {
-        let [low, high] = bounds;
-        let below = low.as_ref().is_some_and(|low| value < low);
-        if below || high.as_ref().is_some_and(|high| value > high) {
-            let end = |end: &Option<Rational>| {
-                end.as_ref().map_or_else(|| "null".to_owned(), ToString::to_string)
-            };
-            self.report.push(at, Cause::OutOfBounds(None, end(low), end(high)));
+        if let Some(beyond) = beyond(value, bounds) {
+            self.report.push(at, Cause::OutOfBounds(None, to_f64(value), beyond));
         }
     }
 

@@ -159,9 +159,11 @@ impl Cause {
     fn fmt_effect(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotRational(text) => write!(f, "\"{}\" is not a rational number", clip(text)),
-            Self::OutOfBounds(name, low, high) => {
-                let of = name.as_ref().map_or_else(String::new, |name| format!(" of `{name}`"));
-                write!(f, "the value{of} is not in [{low}, {high}]")
+            Self::OutOfBounds(Some([parameter, effect]), value, beyond) => {
+                write!(f, "`{parameter}` of `{effect}` is {value}: it cannot be {beyond}")
+            }
+            Self::OutOfBounds(None, value, beyond) => {
+                write!(f, "the value {value} is out of bounds: it cannot be {beyond}")
             }
             Self::NoLaw(kind, key) => write!(f, "an effect of the kind `{kind}` has `{key}`"),
             Self::WrongLaw(kind, key) => {

@@ -26,10 +26,8 @@ impl Search<'_> {
         while now.elsewhere.is_none() {
             let may_exchange = exchanges < MOST_EXCHANGES * (1 + now.parts.len());
             let Some(place) = rivals.iter().position(Option::is_none) else {
-                if !may_exchange {
-                    break;
-                }
-                let Some(merged) = self.merged(&now, is_asked, unmerged) else { break };
+                let merged = may_exchange.then(|| self.merged(&now, is_asked, unmerged));
+                let Some(merged) = merged.flatten() else { break };
                 (now, exchanges) = (merged, exchanges + 1);
                 rivals = unseen(&now);
                 continue;

@@ -57,14 +57,18 @@ pub(super) fn judge(
     for (one, is_named) in diagnosis.effects.iter_mut().zip(named) {
         one.is_named = is_named;
     }
-    let (verdict, mut reasons) = match cancelled(diagnosis, setting) {
+    let cancelled = cancelled(diagnosis, setting);
+    // of what has no name for another reason nothing more is said
+    let open = open.iter().filter(|_| is_alike && cancelled.is_none());
+    let doubts = doubts(diagnosis, setting, found, &open.collect::<Vec<_>>());
+    let (verdict, mut reasons) = match cancelled {
         Some(why) => {
             diagnosis.effects.iter_mut().for_each(|one| one.is_named = false);
             (Verdict::CannotTell, vec![why])
         }
         None => said(diagnosis, setting),
     };
-    reasons.extend(doubts(diagnosis, setting, found));
+    reasons.extend(doubts);
     let untold = untold(setting.data.held_out, &after.residual.held_out);
     diagnosis.is_left_at_reversals = !untold.is_empty();
     reasons.extend(untold);
@@ -213,7 +217,7 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
         let why = format!("alias: others would do as well as {}", ambiguous.join(", "));
         return (Verdict::CannotTell, vec![why]);
     }
-    let unjudged = names(&|one| one.judged < policy::WORTH);
+    let unjudged = names(&|one| one.judged < policy::WORTH && one.log_predicted < policy::NAMED);
     if !unjudged.is_empty() {
         let why = format!("no motion of held-out logs has {} act", unjudged.join(", "));
         return (Verdict::PartlyExplained, vec![why]);
@@ -259,37 +263,48 @@ fn nothing_found(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<
     (verdict, unseen)
 }
 
-/// What else must be known to trust the answer.
-fn doubts(diagnosis: &Diagnosis, setting: &Setting<'_>, found: &Found) -> Vec<String> {
+/// What else must be known to trust the answer. What is `open` says why effects have no name.
+fn doubts(
+    diagnosis: &Diagnosis,
+    setting: &Setting<'_>,
+    found: &Found,
+    open: &[&Vec<f64>],
+) -> Vec<String> {
     let mut reasons = Vec::new();
     let is_searched =
         |log: &Signals| setting.data.train.signals.iter().any(|other| other.q == log.q);
     if setting.data.held_out.signals.iter().any(is_searched) {
         reasons.push("judged with a log that was searched: nothing is held out".to_owned());
     }
-    for one in diagnosis.effects.iter().filter(|one| !one.exact.is_empty()) {
+    for one in &diagnosis.effects {
         let name = setting.candidates[one.candidate].name();
-        reasons.push(format!(
-            "exact alias: {name} does what parameters of the model do in every motion ({}); the \
-             logs say that they are off by more than the model states",
-            one.exact.join(", ")
-        ));
-    }
-    for one in &diagnosis.effects {
-        let Some(change) = one.change_in_time else { continue };
-        reasons.push(format!(
-            "{} is only near to what is missing: in the course of a log that changes by {:.0} % of \
-             its mean to either side, as the law does not",
-            setting.candidates[one.candidate].name(),
-            100.0 * change
-        ));
-    }
-    for one in &diagnosis.effects {
-        let Some(place) = &one.stands_for else { continue };
-        reasons.push(format!(
-            "{} stands for something at {place} that has no name: beside that nothing asks for it",
-            setting.candidates[one.candidate].name()
-        ));
+        if !one.exact.is_empty() {
+            reasons.push(format!(
+                "exact alias: {name} does what parameters of the model do in every motion ({}); \
+                 the logs say that they are off by more than the model states",
+                one.exact.join(", ")
+            ));
+        }
+        let most = open.iter().filter_map(|open| open_beside(setting, open, one));
+        let most = most.max_by(|a, b| a.share.total_cmp(&b.share)).filter(|_| !one.is_named);
+        let why = match (one.change_in_time, &one.stands_for, most) {
+            (Some(change), ..) => format!(
+                "is only near to what is missing: in the course of a log that changes by {:.0} % \
+                 of its mean to either side, as the law does not",
+                100.0 * change
+            ),
+            (None, Some(place), _) => format!(
+                "stands for something at {place} that has no name: beside that nothing asks for it"
+            ),
+            (None, None, Some(left)) => format!(
+                "is only near to what is missing: a residual of {:.1} % of the torque of {} is \
+                 left beside it",
+                100.0 * left.share,
+                diagnosis.places[left.equation]
+            ),
+            _ => continue,
+        };
+        reasons.push(format!("{name} {why}"));
     }
     for &candidate in &found.dropped {
         reasons.push(format!(
@@ -297,12 +312,11 @@ fn doubts(diagnosis: &Diagnosis, setting: &Setting<'_>, found: &Found) -> Vec<St
             setting.candidates[candidate].name()
         ));
     }
-    if found.is_full {
-        reasons.push("as many effects were found as are allowed".to_owned());
-    }
-    if found.is_stopped {
-        reasons.push("the search was stopped: not all was compared".to_owned());
-    }
+    let ends = [
+        (found.is_full, "as many effects were found as are allowed"),
+        (found.is_stopped, "the search was stopped: not all was compared"),
+    ];
+    reasons.extend(ends.iter().filter(|(is, _)| *is).map(|(_, why)| (*why).to_owned()));
     if !diagnosis.driven[1].is_empty() {
         reasons.push(format!(
             "the logs would move parameters beyond their uncertainty: {}",

@@ -10,6 +10,7 @@ mod motion;
 mod one_joint;
 mod plainest;
 mod rests;
+mod ripple;
 mod saturation;
 mod search;
 mod separate;

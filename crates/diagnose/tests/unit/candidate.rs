@@ -29,3 +29,21 @@ fn a_position_that_may_be_anywhere_is_looked_for_where_the_joint_moves() {
     let bounded = of("rad", None, [0.0, 9.0], false);
     assert_eq!(only(&[stiffness, bounded], Some([1.0, 3.0])), [[0.0, 5.0]]);
 }
+
+#[test]
+fn less_than_some_waves_are_asked_only_of_what_scales_a_torque() {
+    let waves = LawParameter {
+        name: "n".to_owned(),
+        unit: "1/rad".to_owned(),
+        nominal: None,
+        bounds: [1.0, 100.0],
+        start: vec![1.5, 6.0, 24.0],
+        linear: false,
+    };
+    let values = |scales_torque: bool| -> Vec<f64> {
+        let all = starts(std::slice::from_ref(&waves), Some([0.0, 1.0]), None, scales_torque);
+        all.into_iter().map(|one| one[0].0).collect()
+    };
+    assert_eq!(values(false), [24.0]);
+    assert_eq!(values(true), [1.5, 6.0, 24.0]);
+}

@@ -88,7 +88,7 @@ fn all_faults_of_a_file_are_told_at_once_with_their_place() {
         ("/parameters/b/unit", "`mm` hides a factor"),
         ("/parameters/qd", "the name `qd` is already that of another quantity"),
         ("/parameters/qd", "the key `start` is missing"),
-        ("/parameters/v/start/0", "the value is not in [0, 1]"),
+        ("/parameters/v/start/0", "the value 2 is out of bounds: it cannot be above 1"),
         ("/parameters/v/start/1", "\"pi\" is not a rational number"),
         ("/torque", "nothing is called `w`"),
         ("/moves", "an effect of the kind `torque` has no `moves`"),

@@ -379,7 +379,7 @@ fn effects_that_a_robot_cannot_have_are_faults_of_its_file() {
         ("/effects/0", "no effect is called `striebeck`"),
         ("/effects/1", "`coulomb` acts on a joint that moves, not here"),
         ("/effects/2", "`coulomb` has no parameter `fcc`"),
-        ("/effects/3", "the value of `fv of viscous` is not in [0, null]"),
+        ("/effects/3", "`fv` of `viscous` is -1: it cannot be below 0"),
         ("/effects/5", "`spring` is added twice in this place"),
         ("/effects/6", "the model has the term already"),
         ("/effects/7", "`base_tilt` acts on the whole model, not here"),

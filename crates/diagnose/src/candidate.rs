@@ -125,8 +125,8 @@ fn values_of(
     };
     // of less than that of a period a law that repeats could be any function
     let repeats = PER_POSITION.contains(&parameter.unit.as_str()) && !scales_torque;
-    let period = range.filter(|_| repeats).map_or(f64::INFINITY, |[low, high]| high - low);
-    let has_enough = |value: &f64| value.abs() * period >= policy::PERIODS * TAU;
+    let least = range.map_or(0.0, |[low, high]| policy::PERIODS * TAU / (high - low));
+    let has_enough = |value: &f64| !repeats || value.abs() >= least;
     let enough: Vec<f64> = values.iter().copied().filter(has_enough).collect();
     let values = if enough.is_empty() { values } else { enough };
     let span = range.map_or(0.0, |[low, high]| high - low);

@@ -40,10 +40,13 @@ fn less_than_some_waves_are_asked_only_of_what_scales_a_torque() {
         start: vec![1.5, 6.0, 24.0],
         linear: false,
     };
-    let values = |scales_torque: bool| -> Vec<f64> {
-        let all = starts(std::slice::from_ref(&waves), Some([0.0, 1.0]), None, scales_torque);
+    let values = |of: &LawParameter, scales_torque: bool| -> Vec<f64> {
+        let all = starts(std::slice::from_ref(of), Some([0.0, 1.0]), None, scales_torque);
         all.into_iter().map(|one| one[0].0).collect()
     };
-    assert_eq!(values(false), [24.0]);
-    assert_eq!(values(true), [1.5, 6.0, 24.0]);
+    assert_eq!(values(&waves, false), [24.0]);
+    assert_eq!(values(&waves, true), [1.5, 6.0, 24.0]);
+    // an angle is none of waves, and may begin where it is off
+    let angle = LawParameter { unit: "rad".to_owned(), start: vec![-0.3, 0.0, 0.3], ..waves };
+    assert_eq!(values(&angle, false), [-0.3, 0.0, 0.3]);
 }

@@ -12,7 +12,7 @@ use crate::model::{
     JointVariables, LawState, Limits, Link, LinkId, ModelError, Parameter, Report, Robot, Role,
     SpringLaw, SpringSide, Terms, Tree, read, read_estimated,
 };
-use crate::number::to_f64;
+use crate::number::decimal_text;
 
 /// Reads a model file with the effects that it names: those of `own`, then the shipped ones.
 /// `file` is the file's name, for messages alone.
@@ -166,7 +166,7 @@ fn values_at_fault(robot: &Robot, effect: &Effect, added: &AddedEffect) -> Vec<C
         let Some(value) = robot.dag.as_constant(*value) else { continue };
         if let Some(beyond) = beyond(value, &parameter.bounds) {
             let of = Some([name.clone(), effect.name.clone()]);
-            faults.push(Cause::OutOfBounds(of, to_f64(value), beyond));
+            faults.push(Cause::OutOfBounds(of, decimal_text(value), beyond));
         }
     }
     faults

@@ -26,7 +26,7 @@ pub use spelling::JointUnit;
 pub use crate::model::SpringSide;
 
 use crate::expr::{Dag, ExprId, free_symbols};
-use crate::number::{Rational, to_f64};
+use crate::number::{Rational, decimal_text};
 use std::borrow::Cow;
 
 /// The tag of a file of an effect.
@@ -412,9 +412,10 @@ impl Effect {
 
 /// Which end of its bounds a value is beyond, in words; none if it is within.
 fn beyond(value: &Rational, [low, high]: &[Option<Rational>; 2]) -> Option<String> {
-    let below = low.as_ref().filter(|low| value < low).map(|low| format!("below {}", to_f64(low)));
+    let below =
+        low.as_ref().filter(|low| value < low).map(|low| format!("below {}", decimal_text(low)));
     let above = || high.as_ref().filter(|high| value > high);
-    below.or_else(|| above().map(|high| format!("above {}", to_f64(high))))
+    below.or_else(|| above().map(|high| format!("above {}", decimal_text(high))))
 }
 
 #[cfg(test)]

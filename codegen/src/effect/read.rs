@@ -15,7 +15,7 @@ use crate::model::json::Value;
 use crate::model::reader::{Fields, Node, Word, read_document};
 use crate::model::spelling::{is_identifier, reserved_by};
 use crate::model::{Cause, Dimension, JointKind, ModelError, Report};
-use crate::number::{Rational, to_f64};
+use crate::number::{Rational, decimal_text};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
 
@@ -223,7 +223,7 @@ impl Reading<'_> {
 
     fn inside(&mut self, value: &Rational, bounds: &[Option<Rational>; 2], at: usize) {
         if let Some(beyond) = beyond(value, bounds) {
-            self.report.push(at, Cause::OutOfBounds(None, to_f64(value), beyond));
+            self.report.push(at, Cause::OutOfBounds(None, decimal_text(value), beyond));
         }
     }
 

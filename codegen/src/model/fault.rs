@@ -250,7 +250,7 @@ pub enum Cause {
     NotRational(String),
     /// A number outside the bounds of the parameter that it is of; holds the parameter's name and
     /// its effect's, if these are not where it stands, the number, and which end it is beyond.
-    OutOfBounds(Option<[String; 2]>, f64, String),
+    OutOfBounds(Option<[String; 2]>, String, String),
     /// An effect without a law of its kind; holds the kind and the key of the law.
     NoLaw(&'static str, &'static str),
     /// An effect with a law that its kind does not have; holds the kind and the key.

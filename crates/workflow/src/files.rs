@@ -161,12 +161,16 @@ impl Files {
     /// The effects of a folder that was asked for.
     ///
     /// # Errors
-    /// If there is no folder, or all that is wrong with one of its files.
+    /// If there is no folder, or none of an effect in it, or all that is wrong with one of its
+    /// files.
     pub fn given_effects(&self, folder: &Path) -> Result<Vec<Effect>, Error> {
-        if folder.is_dir() {
-            return self.own_effects(folder);
+        folder.read_dir().map_err(|error| Error::read(folder, error))?;
+        let effects = self.own_effects(folder)?;
+        if effects.is_empty() {
+            let none = "no effect is in it: effects are files with the ending .json";
+            return Err(Error::read(folder, io::Error::new(io::ErrorKind::NotFound, none)));
         }
-        Err(Error::read(folder, io::ErrorKind::NotADirectory.into()))
+        Ok(effects)
     }
 
     /// The effects of a folder, if there is one.

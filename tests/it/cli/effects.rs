@@ -87,10 +87,17 @@ fn what_a_law_of_loads_leaves_out_is_said() {
 fn folders_that_are_none_and_effects_at_fault_are_refused() {
     let directory = Directory::new("own_effects");
     arm(&directory, "");
-    let Run { code, stderr, .. } =
-        run_in(&directory.path, &["derive", "arm.json", "--effects", "nowhere"]);
-    assert_eq!(code, Some(2));
-    assert_says(&stderr, &["nowhere"]);
+    fs::create_dir_all(directory.path.join("empty")).expect("a folder");
+    for (folder, why) in [
+        ("nowhere", "no such file or directory"),
+        ("arm.json", "not a directory"),
+        ("empty", "no effect is in it"),
+    ] {
+        let arguments = ["derive", "arm.json", "--effects", folder];
+        let Run { code, stderr, .. } = run_in(&directory.path, &arguments);
+        assert_eq!(code, Some(2), "{folder}");
+        assert_says(&stderr, &[folder, why]);
+    }
     let place = directory.path.join("effects/bungee.json");
     let own = fs::read_to_string(&place).expect("a file").replacen("\"unit\"", "\"units\"", 1);
     fs::write(&place, own).expect("a file");

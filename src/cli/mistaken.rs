@@ -21,7 +21,7 @@ pub(crate) fn other_command(mistaken: &Mistaken) -> String {
         }
         (Kind::Scenario, _) => format!("`denavit simulate {name}` runs it"),
         (Kind::Gait, _) => {
-            format!("a gait is designed first: `denavit walk design {name} -o walk.json`")
+            format!("a gait is designed first: `denavit walk design {name} -o scenario.json`")
         }
         (Kind::Controller, _) => {
             format!("`denavit identify MODEL --train LOG --controller {name}` reads it")

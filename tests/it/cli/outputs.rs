@@ -4,92 +4,57 @@
 use super::errors::assert_says;
 use super::{Directory, command, run_in};
 use std::fs;
-use std::io::Write;
 use std::os::unix::fs::symlink;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// A shell that waits for a word before it sends a signal: on a busy machine a command that is
-/// started only then comes too late.
-fn ready(signal: &str, child: &Child) -> Child {
-    let mut shell = Command::new("sh");
-    shell.args(["-c", r#"read -r word && kill "$0" "$1""#, signal, &child.id().to_string()]);
-    shell.stdin(Stdio::piped()).spawn().expect("a shell starts")
-}
-
-/// Has a shell that is ready send its signal.
-fn send(mut shell: Child) {
-    shell.stdin.take().expect("a pipe").write_all(b"now\n").expect("the shell waits");
-    assert!(shell.wait().expect("it ends").success());
-}
-
-/// Sends a running command a signal as soon as something is there, and says how it ended; none if
-/// it ended before.
-fn ended_by(signal: &str, child: &mut Child, is_there: &dyn Fn() -> bool) -> Option<ExitStatus> {
-    let (start, mut shell) = (Instant::now(), ready(signal, child));
+/// Sends a running command a signal as soon as something is there.
+fn send(signal: &str, child: &mut Child, is_there: &dyn Fn() -> bool) {
+    let start = Instant::now();
     while !is_there() {
-        if let Some(status) = child.try_wait().expect("a status") {
-            assert_eq!(status.code(), Some(0), "nothing but its end ends it");
-            drop(shell.stdin.take());
-            shell.wait().expect("it ends");
-            return None;
-        }
+        assert!(child.try_wait().expect("a status").is_none(), "it waits");
         assert!(start.elapsed() < Duration::from_secs(120), "nothing came");
         sleep(Duration::from_micros(200));
     }
-    send(shell);
-    Some(child.wait().expect("it ends"))
+    let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
+    assert!(sent.expect("kill runs").success());
 }
 
 fn is_temporary(name: &str) -> bool {
     name.starts_with('.')
 }
 
-/// A log of tens of megabytes: it takes longer to be written than `kill` to be started, on a busy
-/// machine as well.
-const LONG: &str = r#"{"format": "denavit-scenario/1", "model": "planar_2r", "duration_s": 0.2,
- "log_period_s": 1e-6}"#;
+fn make_pipe(directory: &Directory, name: &str) {
+    let made = Command::new("mkfifo").arg(directory.path.join(name)).status();
+    assert!(made.expect("mkfifo runs").success());
+}
+
+/// Files are named together. Of these the second is a pipe: until somebody reads it, the first is
+/// written and has no name.
+const TWO_FILES: [&str; 5] = ["emit", "scara", "--language", "c", "-o"];
 
 #[test]
 fn a_signal_leaves_no_half_of_an_output() {
-    let directory = Directory::new("no-signal");
-    fs::write(directory.path.join("long.json"), LONG).expect("a file");
-    let whole = run_in(&directory.path, &["simulate", "long.json", "-o", "-"]).stdout;
     for (signal, number) in [("-INT", 2), ("-TERM", 15), ("-HUP", 1), ("-KILL", 9)] {
-        let mut status = None;
-        // A run may have written before `kill` is started, and on a busy machine mostly has.
-        for _ in 0..200 {
-            let directory = Directory::new("signal");
-            fs::write(directory.path.join("long.json"), LONG).expect("a file");
-            let mut child = command(&directory.path)
-                .args(["simulate", "long.json", "-o", "log.csv"])
-                .stdout(Stdio::null())
-                .spawn()
-                .expect("the command starts");
-            let is_writing = || directory.files().iter().any(|name| is_temporary(name));
-            status = ended_by(signal, &mut child, &is_writing);
-            let mut left = directory.files();
-            // an end that cannot be heeded leaves a file under a name that is nobody's
-            left.retain(|name| number != 9 || !is_temporary(name));
-            let is_named = left == ["log.csv", "long.json"];
-            if status.is_some_and(|status| status.signal() == Some(number)) && !is_named {
-                assert_eq!(left, ["long.json"], "{signal}");
-                // which is in no later run's way
-                let run = run_in(&directory.path, &["simulate", "long.json", "-o", "log.csv"]);
-                assert_eq!(run.code, Some(0), "{}", run.stderr);
-                break;
-            }
-            // what has its name is whole
-            assert!(is_named, "{signal}: {left:?}");
-            let log = fs::read_to_string(directory.path.join("log.csv")).expect("a log");
-            assert!(log == whole, "{signal}: {} of {} bytes", log.len(), whole.len());
-            status = None;
-        }
-        let status = status.expect("a run is caught");
+        let directory = Directory::new("signal");
+        make_pipe(&directory, "code.h");
+        let mut waits = command(&directory.path);
+        let mut child =
+            waits.args(TWO_FILES).arg("code.c").stdout(Stdio::null()).spawn().expect("it starts");
+        send(signal, &mut child, &|| directory.files().iter().any(|name| is_temporary(name)));
+        let status = child.wait().expect("it ends");
         assert_eq!(status.signal(), Some(number), "a shell sees 128 and {number}: {status}");
+        let mut left = directory.files();
+        // an end that cannot be heeded leaves a file under a name that is nobody's
+        left.retain(|name| number != 9 || !is_temporary(name));
+        assert_eq!(left, ["code.h"], "{signal}");
+        // which is in no later run's way
+        fs::remove_file(directory.path.join("code.h")).expect("a pipe");
+        let run = run_in(&directory.path, &[&TWO_FILES[..], &["code.c"]].concat());
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
     }
 }
 
@@ -97,16 +62,15 @@ fn a_signal_leaves_no_half_of_an_output() {
 #[test]
 fn a_signal_leaves_no_empty_folder() {
     let directory = Directory::new("signal-folder");
-    let made = Command::new("mkfifo").arg(directory.path.join("log.csv")).status();
-    assert!(made.expect("mkfifo runs").success());
+    make_pipe(&directory, "log.csv");
     let words = ["diagnose", "tulip_leg_table34", "--train", "log.csv", "--validate", "log.csv"];
     let mut child = command(&directory.path)
         .args([&words[..], &["--out", "new/found"]].concat())
         .spawn()
         .expect("the command starts");
     let there = directory.path.join("new/found");
-    let status = ended_by("-TERM", &mut child, &|| there.exists()).expect("it waits");
-    assert_eq!(status.signal(), Some(15));
+    send("-TERM", &mut child, &|| there.exists());
+    assert_eq!(child.wait().expect("it ends").signal(), Some(15));
     assert_eq!(directory.files(), ["log.csv"]);
 }
 
@@ -115,19 +79,21 @@ fn a_signal_leaves_no_empty_folder() {
 #[test]
 fn a_signal_that_was_ignored_stays_ignored() {
     let directory = Directory::new("nohup");
-    fs::write(directory.path.join("long.json"), LONG).expect("a file");
+    make_pipe(&directory, "code.h");
     let denavit = env!("CARGO_BIN_EXE_denavit");
-    let script = format!("trap '' HUP; exec '{denavit}' simulate long.json -o log.csv > said.txt");
+    let script = format!("trap '' HUP; exec '{denavit}' {} code.c > said.txt", TWO_FILES.join(" "));
     let mut child = Command::new("sh")
         .args(["-c", &script])
         .current_dir(&directory.path)
         .spawn()
         .expect("a shell starts");
-    let is_begun = || directory.files().iter().any(|name| is_temporary(name) || name == "said.txt");
-    if let Some(status) = ended_by("-HUP", &mut child, &is_begun) {
-        assert_eq!(status.code(), Some(0), "{status}");
-    }
-    assert_eq!(directory.files(), ["log.csv", "long.json", "said.txt"]);
+    send("-HUP", &mut child, &|| directory.files().iter().any(|name| is_temporary(name)));
+    let read = Command::new("cat").arg(directory.path.join("code.h")).stdout(Stdio::null()).spawn();
+    let status = child.wait().expect("it ends");
+    // a run that the signal ended has left nothing to read
+    let _ = read.expect("a reader").kill();
+    assert_eq!(status.code(), Some(0), "{status}");
+    assert_eq!(directory.files(), ["code.c", "code.h", "said.txt"]);
 }
 
 fn draw(directory: &Directory, to: &str) -> super::Run {

@@ -152,6 +152,11 @@ fn a_law_is_held_against_all_that_is_no_noise() {
         assert!(has, "{:?}", found.reasons);
         let expected: &[&str] = if is_named { &["spring"] } else { &[] };
         assert_eq!(names, expected, "{:?}", found.reasons);
+        // why it has no name is said, with what is left and where
+        let is_said = found.reasons.iter().any(|one| {
+            one.contains("only near to what is missing: a residual of") && one.contains("sled")
+        });
+        assert_eq!(is_said, !is_named, "{:?}", found.reasons);
     }
 }
 
@@ -163,6 +168,8 @@ fn a_held_out_torque_of_nothing_is_no_panic() {
     let (found, _) = diagnosed(SLED, [made, nothing]);
     let is_sure = matches!(found.verdict, Verdict::Explained | Verdict::NothingMissing);
     assert!(!is_sure, "{:?} {:?}", found.verdict, found.reasons);
+    // of a torque of nothing no share can be explained
+    assert!(found.effects.iter().all(|one| one.share == 0.0), "{:?}", found.effects);
 }
 
 /// What a log says of Coulomb friction through an encoder of so large steps, beside a force below

@@ -389,6 +389,8 @@ def test_ctrl_c_says_one_sentence(study_file, tmp_path):
     process = subprocess.Popen(
         [*command, "-o", str(tmp_path / "rows.parquet")], stderr=subprocess.PIPE, text=True,
         start_new_session=True,
+        # a job in the background would have it ignored
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )  # fmt: skip
     until = time.monotonic() + 60
     while not (tmp_path / "rows.parquet.rows").exists():

@@ -84,11 +84,11 @@ pub(super) fn starts(
     parameters: &[LawParameter],
     range: Option<[f64; 2]>,
     largest: Option<f64>,
-    scales_torque: bool,
+    is_of_motion: bool,
 ) -> Vec<Start> {
     let mut all: Vec<Start> = vec![Vec::new()];
     for parameter in parameters {
-        let values = values_of(parameter, range, largest, scales_torque);
+        let values = values_of(parameter, range, largest, is_of_motion);
         let longer = |start: &Start| -> Vec<Start> {
             values.iter().map(|own| [start.as_slice(), &[*own]].concat()).collect()
         };
@@ -104,7 +104,7 @@ fn values_of(
     parameter: &LawParameter,
     range: Option<[f64; 2]>,
     largest: Option<f64>,
-    scales_torque: bool,
+    is_of_motion: bool,
 ) -> Vec<(f64, Option<f64>)> {
     let [low, high] = parameter.bounds;
     let is_position = ["rad", "m"].contains(&parameter.unit.as_str());
@@ -123,8 +123,8 @@ fn values_of(
         (nominal, ..) if parameter.start.is_empty() => vec![nominal.unwrap_or(0.0)],
         _ => parameter.start.clone(),
     };
-    // of less than that of a period a law that repeats could be any function
-    let repeats = PER_POSITION.contains(&parameter.unit.as_str()) && !scales_torque;
+    // of less than that of a period a law that repeats could be any function of the position
+    let repeats = PER_POSITION.contains(&parameter.unit.as_str()) && is_of_motion;
     let least = range.map_or(0.0, |[low, high]| policy::PERIODS * TAU / (high - low));
     let has_enough = |value: &f64| !repeats || value.abs() >= least;
     let enough: Vec<f64> = values.iter().copied().filter(has_enough).collect();

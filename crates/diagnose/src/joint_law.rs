@@ -231,10 +231,6 @@ impl Law for JointLaw {
         self.acts == Acts::Torque && self.law.is_gain()
     }
 
-    fn scales_torque(&self) -> bool {
-        self.acts == Acts::Torque && self.law.scales_torque()
-    }
-
     fn is_of_motion(&self) -> bool {
         self.law.is_of_motion() && self.law.on_second().is_none_or(EffectLaw::is_of_motion)
     }

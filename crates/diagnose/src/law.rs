@@ -178,11 +178,6 @@ pub trait Law {
         false
     }
 
-    /// Whether a torque is multiplied in its log: at the same position that has both signs.
-    fn scales_torque(&self) -> bool {
-        false
-    }
-
     /// Whether it is a function of the motion alone: the same whatever the model's numbers are.
     fn is_of_motion(&self) -> bool {
         false

@@ -323,7 +323,7 @@ impl<'a> Weighing<'a> {
     pub(super) fn starts(&self, candidate: &Candidate) -> Vec<Start> {
         let range = candidate.joint.map(|joint| range(&self.sets, joint));
         let largest = candidate.joint.and_then(|joint| largest(&self.sets, joint));
-        starts(candidate.law.parameters(), range, largest, candidate.law.scales_torque())
+        starts(candidate.law.parameters(), range, largest, candidate.law.is_of_motion())
     }
 
     /// An effect where it is placed, with its terms.

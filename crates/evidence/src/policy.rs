@@ -138,7 +138,7 @@ pub const LEAST_FELT: f64 = 1e-7;
 pub const NOTHING_LIKE: f64 = 0.6;
 
 /// Periods of a law that repeats along a joint, of what the logs cover of it, at least: less of one
-/// is like any smooth law of the position. Laws that scale a torque are not asked for it.
+/// is like any smooth law of the position. Laws that a torque takes part in are not asked.
 pub const PERIODS: f64 = 1.5;
 
 /// Above this share of the torque, and this many times the noise that sensors have, the residual is

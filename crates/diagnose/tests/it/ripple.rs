@@ -1,7 +1,9 @@
-//! A torque sensor that does not run true, on a joint that turns by less than one of its waves.
+//! Torque sensors that do not run true, and gear teeth, on a joint that turns by less than one of
+//! their waves.
 
 use super::motion::waves;
 use super::one_joint::{diagnosed, log};
+use denavit_measure::log::MeasuredLog;
 
 const PENDULUM: &str = r#"{
   "format": "denavit-model/1", "name": "pendulum", "convention": "standard",
@@ -20,25 +22,36 @@ const PENDULUM: &str = r#"{
 const MOMENT: f64 = 0.618;
 const INERTIA: f64 = 0.2266;
 
-#[test]
-fn a_ripple_has_its_name_on_less_than_a_wave() {
-    // 1.2 rad of waves of 3.1 and 6.3 rad
-    for (n, phase) in [(1.0, 0.6), (2.0, 2.1)] {
-        let torque = |[q, qd, qdd]: [f64; 3]| {
-            let own = INERTIA * qdd + 9.81 * MOMENT * q.cos() + 0.154 * qd + 0.41 * qd.signum();
-            own * (1.0 + 0.2 * f64::sin(n * q + phase))
+/// What a sensor shows whose factor repeats by a fifth, with `n` waves a turn and a phase: of all of
+/// the torque, or of what the drive carries beside its own friction.
+fn rippled(n: f64, phase: f64, of_load: bool) -> [MeasuredLog; 2] {
+    let torque = |[q, qd, qdd]: [f64; 3]| {
+        let load = INERTIA * qdd + 9.81 * MOMENT * q.cos();
+        let friction = 0.154 * qd + 0.41 * qd.signum();
+        let factor = 1.0 + 0.2 * f64::sin(n * q + phase);
+        if of_load { load * factor + friction } else { (load + friction) * factor }
+    };
+    [1_u32, 2].map(|seed| {
+        let along = |t: f64| {
+            let terms = [(0.45, 1.0), (0.2, 3.0), (0.1, 4.0)];
+            let [q, qd, qdd] = waves(&terms, 1.3 * f64::from(seed), t);
+            [q - 1.0, qd, qdd]
         };
-        let logs = [1_u32, 2].map(|seed| {
-            let along = |t: f64| {
-                let terms = [(0.45, 1.0), (0.2, 3.0), (0.1, 4.0)];
-                let [q, qd, qdd] = waves(&terms, 1.3 * f64::from(seed), t);
-                [q - 1.0, qd, qdd]
-            };
-            log(&along, &torque, u64::from(seed), 0.02)
-        });
-        let (found, candidates) = diagnosed(PENDULUM, logs);
+        log(&along, &torque, u64::from(seed), 0.02)
+    })
+}
+
+/// 1.2 rad are less than a wave of 6.3, 3.7 and 3.1 rad.
+#[test]
+fn factors_that_repeat_have_their_names_on_less_than_a_wave() {
+    let of_all = ("torque_ripple at rod", false);
+    let of_load = ("transmission_error at rod", true);
+    for (n, phase, (name, is_of_load)) in
+        [(1.0, 0.6, of_all), (2.0, 2.1, of_all), (1.7, 0.6, of_load), (2.0, 2.1, of_load)]
+    {
+        let (found, candidates) = diagnosed(PENDULUM, rippled(n, phase, is_of_load));
         let names = found.effects.iter().map(|one| candidates[one.candidate].name());
-        assert_eq!(names.collect::<Vec<_>>(), ["torque_ripple at rod"], "{n}");
+        assert_eq!(names.collect::<Vec<_>>(), [name], "{n}");
         let value = |name: &str| {
             let mut own = found.effects[0].parameters.iter();
             own.find(|one| one.name == name).expect("a parameter of a ripple")

@@ -16,12 +16,12 @@ fn a_position_that_may_be_anywhere_is_looked_for_where_the_joint_moves() {
     let stiffness = of("N m/rad", Some(0.0), [0.0, f64::INFINITY], true);
     let stiffness = LawParameter { start: Vec::new(), ..stiffness };
     let place = of("rad", None, open, false);
-    let within = starts(&[stiffness.clone(), place.clone()], Some([1.0, 3.0]), None, false);
+    let within = starts(&[stiffness.clone(), place.clone()], Some([1.0, 3.0]), None, true);
     assert_eq!(within.len(), PLACES.len());
     assert!(within.iter().all(|one| one[0] == (0.0, None)));
     assert!(within.iter().all(|one| 1.0 < one[1].0 && one[1].0 < 3.0));
     let only = |parameters: &[LawParameter], range| {
-        let all = starts(parameters, range, None, false).into_iter();
+        let all = starts(parameters, range, None, true).into_iter();
         let values = |one: Start| one.into_iter().map(|(value, _)| value).collect();
         all.map(values).collect::<Vec<Vec<f64>>>()
     };
@@ -31,7 +31,7 @@ fn a_position_that_may_be_anywhere_is_looked_for_where_the_joint_moves() {
 }
 
 #[test]
-fn less_than_some_waves_are_asked_only_of_what_scales_a_torque() {
+fn some_waves_are_asked_only_of_functions_of_the_motion() {
     let waves = LawParameter {
         name: "n".to_owned(),
         unit: "1/rad".to_owned(),
@@ -40,13 +40,13 @@ fn less_than_some_waves_are_asked_only_of_what_scales_a_torque() {
         start: vec![1.5, 6.0, 24.0],
         linear: false,
     };
-    let values = |of: &LawParameter, scales_torque: bool| -> Vec<f64> {
-        let all = starts(std::slice::from_ref(of), Some([0.0, 1.0]), None, scales_torque);
+    let values = |of: &LawParameter, is_of_motion: bool| -> Vec<f64> {
+        let all = starts(std::slice::from_ref(of), Some([0.0, 1.0]), None, is_of_motion);
         all.into_iter().map(|one| one[0].0).collect()
     };
-    assert_eq!(values(&waves, false), [24.0]);
-    assert_eq!(values(&waves, true), [1.5, 6.0, 24.0]);
+    assert_eq!(values(&waves, true), [24.0]);
+    assert_eq!(values(&waves, false), [1.5, 6.0, 24.0]);
     // an angle is none of waves, and may begin where it is off
     let angle = LawParameter { unit: "rad".to_owned(), start: vec![-0.3, 0.0, 0.3], ..waves };
-    assert_eq!(values(&angle, false), [-0.3, 0.0, 0.3]);
+    assert_eq!(values(&angle, true), [-0.3, 0.0, 0.3]);
 }

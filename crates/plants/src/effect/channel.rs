@@ -219,22 +219,13 @@ impl EffectLaw {
         self.channel.as_ref().is_some_and(|law| law.is_gain)
     }
 
-    /// Whether a torque is multiplied in its log, by a constant or by what changes with the motion.
-    pub fn scales_torque(&self) -> bool {
-        self.scaling().is_some()
-    }
-
-    fn scaling(&self) -> Option<&ChannelLaw> {
-        let does_more =
-            |law: &&ChannelLaw| law.is_inverse || law.is_timing || law.transmission.is_some();
-        let law = self.channel.as_ref();
-        law.filter(|law| law.channel == Channel::Torque && !does_more(law))
-    }
-
     /// What a torque is multiplied by in its log, sample by sample; none of laws of another
     /// channel, of time, and of what is between the drive and the joint.
     pub fn factor(&self, samples: &JointSamples<'_>, values: &[f64]) -> Option<Vec<f64>> {
-        let law = self.scaling()?;
+        let does_more =
+            |law: &&ChannelLaw| law.is_inverse || law.is_timing || law.transmission.is_some();
+        let law = self.channel.as_ref();
+        let law = law.filter(|law| law.channel == Channel::Torque && !does_more(law))?;
         let columns: Vec<&[f64]> = law.columns.iter().map(|&at| samples.column(at)).collect();
         Some(law.slope.run(&columns, values, samples.len()).swap_remove(0))
     }

@@ -22,8 +22,8 @@ const PENDULUM: &str = r#"{
 const MOMENT: f64 = 0.618;
 const INERTIA: f64 = 0.2266;
 
-/// What a sensor shows whose factor repeats by a fifth, with `n` waves a turn and a phase: of all of
-/// the torque, or of what the drive carries beside its own friction.
+/// What a sensor shows whose factor repeats, by a fifth, with `n` waves a turn and a phase: of all
+/// of the torque, or of what the drive carries beside its own friction.
 fn rippled(n: f64, phase: f64, of_load: bool) -> [MeasuredLog; 2] {
     let torque = |[q, qd, qdd]: [f64; 3]| {
         let load = INERTIA * qdd + 9.81 * MOMENT * q.cos();

@@ -123,7 +123,7 @@ fn values_of(
         (nominal, ..) if parameter.start.is_empty() => vec![nominal.unwrap_or(0.0)],
         _ => parameter.start.clone(),
     };
-    // of less than that of a period a law that repeats could be any function of the position
+    // on less than some periods a law that repeats is like any function of the position
     let repeats = PER_POSITION.contains(&parameter.unit.as_str()) && is_of_motion;
     let least = range.map_or(0.0, |[low, high]| policy::PERIODS * TAU / (high - low));
     let has_enough = |value: &f64| !repeats || value.abs() >= least;

@@ -311,7 +311,8 @@ impl<'a> Weighing<'a> {
             let up_to_hz = self.up_to(law.follows_accelerations());
             let (known, _) = self.spectra.of_response(&self.sets, &rows, up_to_hz);
             let unpredicted = self.unpredicted(law, &values);
-            glance.see(&Terms { known, unpredicted, ..Terms::default() }).gain
+            let log_volume = self.log_volume(law, &values);
+            glance.see(&Terms { known, unpredicted, log_volume, ..Terms::default() }).gain
         };
         let mut gains: Vec<(f64, Start)> =
             all.drain(..).map(|start| (gain(&start), start)).collect();
@@ -339,7 +340,8 @@ impl<'a> Weighing<'a> {
     }
 
     fn terms_of(&self, placed: &Placed, known: Spectrum, mut columns: Vec<Spectrum>) -> Terms {
-        let parameters = self.candidates[placed.candidate].law.parameters();
+        let law = self.candidates[placed.candidate].law.as_ref();
+        let parameters = law.parameters();
         for (column, deviation) in columns.iter_mut().zip(&placed.deviations) {
             column.iter_mut().flatten().for_each(|entry| *entry *= deviation);
         }
@@ -359,13 +361,13 @@ impl<'a> Weighing<'a> {
             lowest: lowest.collect(),
             is_curved: parameters.iter().map(|parameter| !parameter.linear).collect(),
             believed: believed.collect(),
-            unpredicted: self
-                .unpredicted(self.candidates[placed.candidate].law.as_ref(), &placed.values),
+            unpredicted: self.unpredicted(law, &placed.values),
+            log_volume: self.log_volume(law, &placed.values),
             columns,
         }
     }
 
-    /// The samples of which an effect says nothing, and the noise that it makes smaller.
+    /// The samples of which an effect says nothing.
     fn unpredicted(&self, law: &dyn Law, values: &[f64]) -> Unpredicted {
         let (mut cut, mut squares, mut all) = (0.0, 0.0, 0.0);
         for (data, torques) in self.sets.iter().zip(&self.torques) {
@@ -378,24 +380,18 @@ impl<'a> Weighing<'a> {
                 all += samples;
             }
         }
-        let narrowed = law.following().map(|(joint, law)| {
-            let noise = self.torque_noise(joint);
-            let lost = |hz| noise * (1.0 - law.gain(hz, values));
-            (joint.0, self.spectra.frequencies(joint.0).map(lost).collect())
-        });
         Unpredicted {
             share: cut / f64::max(all, 1.0),
             left: squares / f64::max(cut, 1.0),
-            narrowed,
         }
     }
 
-    /// The variance of white noise of a measured torque in its lines.
-    fn torque_noise(&self, joint: JointIndex) -> f64 {
-        let logs = || self.sets.iter().flat_map(|data| &data.signals);
-        let square = |log: &Signals| log.torque_noise[joint.0].powi(2);
-        let all = logs().map(|log| square(log) * log.log_step_s / log.row_step_s());
-        all.sum::<f64>() / logs().count().max(1) as f64
+    /// The log of by how much data shrink that pass the filter of an effect.
+    fn log_volume(&self, law: &dyn Law, values: &[f64]) -> f64 {
+        law.following().map_or(0.0, |(joint, law)| {
+            let lines = self.spectra.frequencies(joint.0);
+            lines.map(|hz| 0.5 * law.gain(hz, values).ln()).sum()
+        })
     }
 
     /// What an effect does at the joint where that is most, as a share of its torque.

@@ -123,6 +123,7 @@ impl Glance {
                 - determinant
                 - 0.5 * factors.norm_squared()
                 - 0.5 * own.norm_squared()
+                + terms.log_volume
                 - self.unpredicted(terms, &variances);
             if gain.is_finite() { gain } else { f64::NEG_INFINITY }
         };
@@ -158,7 +159,7 @@ impl Glance {
 
     /// What terms do not earn, since they say nothing of some rows.
     fn unpredicted(&self, terms: &Terms, variances: &[f64]) -> f64 {
-        if terms.unpredicted.share <= 0.0 && terms.unpredicted.narrowed.is_none() {
+        if terms.unpredicted.share <= 0.0 {
             return 0.0;
         }
         let of = |((channel, rows), variance): (&(usize, Range<usize>), &f64)| {

@@ -19,6 +19,9 @@ pub struct Terms {
     pub believed: Vec<f64>,
     /// What the effect says nothing of.
     pub unpredicted: Unpredicted,
+    /// Of an effect that filters what was measured, the log of by how much data shrink: their
+    /// density is that of what passes, times this volume.
+    pub log_volume: f64,
 }
 
 impl Terms {
@@ -52,6 +55,7 @@ impl Terms {
         both.lowest.extend(&other.lowest);
         both.is_curved.extend(&other.is_curved);
         both.believed.extend(&other.believed);
+        both.log_volume += other.log_volume;
         both
     }
 
@@ -59,7 +63,8 @@ impl Terms {
     pub(crate) fn linear(&self) -> Self {
         let places = (0..self.len()).filter(|&k| !self.is_curved[k]);
         let (known, unpredicted) = (self.known.clone(), self.unpredicted.clone());
-        let mut linear = Self { known, unpredicted, ..Self::default() };
+        let log_volume = self.log_volume;
+        let mut linear = Self { known, unpredicted, log_volume, ..Self::default() };
         for k in places {
             linear.columns.push(self.columns[k].clone());
             linear.lowest.push(self.lowest[k]);

@@ -28,9 +28,6 @@ pub struct Unpredicted {
     pub share: f64,
     /// The mean square of the data in these rows where what is beyond is taken away.
     pub left: f64,
-    /// A channel in which noise of what was measured passes a filter, and by how much its variance
-    /// is smaller then, row by row.
-    pub narrowed: Option<(usize, Vec<f64>)>,
 }
 
 /// What terms do not earn where effects take away what data are, whatever that is. Cells are
@@ -44,21 +41,10 @@ pub(crate) fn unearned(terms: &[&Terms], cells: &[(usize, Range<usize>, f64)]) -
         };
         one.known.iter().enumerate().map(of_channel).sum()
     };
-    let limited = terms.iter().filter(|one| one.unpredicted.share > 0.0).map(of).sum::<f64>();
-    limited + terms.iter().map(|one| one.unpredicted.smaller_noise(cells)).sum::<f64>()
+    terms.iter().filter(|one| one.unpredicted.share > 0.0).map(of).sum()
 }
 
 impl Unpredicted {
-    /// What noise that is made smaller does not earn: that is no prediction. With v what is left of
-    /// a row and l what a filter took of its noise, 1/2 log((v + l) / v).
-    fn smaller_noise(&self, cells: &[(usize, Range<usize>, f64)]) -> f64 {
-        let Some((channel, lost)) = &self.narrowed else { return 0.0 };
-        let of_cell = |(_, rows, variance): &(usize, Range<usize>, f64)| {
-            lost[rows.clone()].iter().map(|lost| 0.5 * (lost / variance).ln_1p()).sum::<f64>()
-        };
-        cells.iter().filter(|(of, ..)| of == channel).map(of_cell).sum()
-    }
-
     /// What the rows of a channel do not earn: `known` is taken away from them, and each of its
     /// cells has a variance.
     fn cost(&self, known: &[f64], cells: &[(Range<usize>, f64)]) -> f64 {

@@ -79,7 +79,8 @@ impl Base {
         let (evidence, variances) = settled(&cells, &expected, start, rounds, &[]);
         let both = self.layout.cells().zip(&variances);
         let all: Vec<_> = both.map(|((channel, rows), v)| (channel, rows, *v)).collect();
-        let evidence = evidence - unearned(terms, &all);
+        let log_volume = terms.iter().map(|one| one.log_volume).sum::<f64>();
+        let evidence = evidence + log_volume - unearned(terms, &all);
         let posterior = Posterior::new(&cells, &variances, &[]);
         let mut weighed = posterior.told(terms, self.parameters, evidence, variances);
         weighed.own = self.own_factors(&weighed.own);

@@ -28,6 +28,7 @@ fn problem(seed: u64) -> (Spectrum, Vec<Spectrum>, Terms) {
         is_curved: vec![false; 2],
         believed: vec![0.3, 0.0],
         unpredicted: Unpredicted::default(),
+        log_volume: 0.0,
     };
     (data, own, terms)
 }
@@ -217,9 +218,11 @@ fn what_takes_nearly_all_away_must_predict_the_rest() {
     }
 }
 
-/// A lag of what was measured leaves less of its noise, and predicts nothing by that.
+/// A lag of what was measured leaves less of it, and predicts nothing by that: whether it is the
+/// noise of sensors or another one, the density of the data is that of what passes, times by how
+/// much data shrink.
 #[test]
-fn what_makes_noise_smaller_predicts_nothing() {
+fn what_makes_data_smaller_predicts_nothing() {
     let mut random = Random::new(12);
     let data = vec![(0..400).map(|_| random.normal()).collect::<Vec<f64>>()];
     let layout = Layout { bands: vec![vec![0..400]], levels: vec![0.02] };
@@ -227,13 +230,15 @@ fn what_makes_noise_smaller_predicts_nothing() {
     let evidence = |terms: &[&Terms]| base.weigh(terms, None, 40).log_evidence;
     for gain in [0.99, 0.8, 0.5_f64] {
         let known = vec![data[0].iter().map(|row| (1.0 - gain) * row).collect()];
-        // by the mean square that the data have
-        let square = data[0].iter().map(|row| row * row).sum::<f64>() / 400.0;
-        let lost = vec![square * (1.0 - gain * gain); 400];
-        let unpredicted = Unpredicted { narrowed: Some((0, lost)), ..Unpredicted::default() };
-        let gained = evidence(&[&Terms { known, unpredicted, ..Terms::default() }]) - evidence(&[]);
+        let log_volume = 400.0 * gain.ln();
+        let filtered = Terms { known, log_volume, ..Terms::default() };
+        let none = base.weigh(&[], None, 40);
         // but for what is believed of the size of noise
-        assert!(gained.abs() < -0.02 * 400.0 * gain.ln(), "{gain}: {gained}");
+        let little = -0.02 * log_volume;
+        let gained = evidence(&[&filtered]) - none.log_evidence;
+        assert!(gained.abs() < little, "{gain}: {gained}");
+        let seen = Glance::new(&base, &[], &none.variances).see(&filtered).gain;
+        assert!(seen.abs() < little, "{gain}: {seen}");
     }
 }
 

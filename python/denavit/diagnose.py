@@ -49,6 +49,8 @@ class FoundEffect:
     share: float
     parameters: Mapping[str, Mapping[str, Any]]
     indistinguishable: tuple[OtherName, ...] = of(OtherName)
+    finer: tuple[OtherName, ...] = of(OtherName)
+    """Finer forms of the same law that the logs do not ask for."""
     exact_alias: tuple[str, ...] = ()
     """Parameters of the model that do exactly the same, whatever the motion."""
     separating_experiment: Mapping[str, Any] | None = field(default=None, repr=False)

@@ -331,6 +331,9 @@ pub struct Effect {
     /// What the second joint of a pair needs besides [N m, N], in the symbols of the first one's
     /// law; none where only the first joint feels the effect.
     pub torque_2: Option<ExprId>,
+    /// Shipped effects that it is a finer form of: with some values of its parameters, or near
+    /// them, it is the same law.
+    pub refines: Vec<String>,
     /// What it is taken for.
     pub confused_with: Vec<Confusion>,
     /// Holds the expressions; the symbols of the motion are those of [`VARIABLES`].

@@ -5,8 +5,9 @@ use super::linear::{depends, linear};
 use super::spelling::JointUnit;
 use super::{
     Confusion, Effect, EffectKind, EffectParameter, EffectSite, EffectState, FORMAT, Law, Measured,
-    Occurrence, Property, Transmission, beyond,
+    Occurrence, Property, SHIPPED, Transmission, beyond,
 };
+use crate::expr::text::nearest;
 use crate::expr::{Dag, ExprId, SymbolClass, substitute};
 use crate::model::check::Scope;
 use crate::model::entry::{Name, Scalar};
@@ -36,6 +37,7 @@ const KEYS: &[&str] = &[
     "measured",
     "moves",
     "term",
+    "refines",
     "confused_with",
 ];
 
@@ -98,6 +100,7 @@ fn read_root(root: Node<'_>, joint: JointKind, report: &mut Report) -> Option<Ef
     let law = LawFile::read(&fields, kind, reading.report);
     let law = law.and_then(|law| reading.law.law(&law, reading.report));
     let torque_2 = reading.law.on_second(&fields, kind, at, reading.report);
+    let refines = reading.refines(&fields);
     let confused_with = reading.confused_with(&fields);
     let texts = ["title", "description", "source"]
         .map(|key| fields.required_name(key, reading.report).text.into_owned());
@@ -124,6 +127,7 @@ fn read_root(root: Node<'_>, joint: JointKind, report: &mut Report) -> Option<Ef
         states,
         law,
         torque_2,
+        refines,
         confused_with,
         dag,
     })
@@ -319,6 +323,18 @@ impl Reading<'_> {
             self.report.push(scalar.at, Cause::NotRational(text));
         }
         value
+    }
+
+    fn refines(&mut self, fields: &Fields<'_>) -> Vec<String> {
+        fields.items("refines", self.report, |node, report| {
+            let name = node.text(report)?;
+            let known = || SHIPPED.iter().map(|(known, _)| *known);
+            if !known().any(|known| known == name) {
+                let hint = nearest(name, known()).map(str::to_owned);
+                report.push(node.at(), Cause::UnknownEffect(name.to_owned(), hint));
+            }
+            Some(name.to_owned())
+        })
     }
 
     fn confused_with(&mut self, fields: &Fields<'_>) -> Vec<Confusion> {

@@ -26,6 +26,8 @@ pub struct Candidate {
     pub is_body: bool,
     /// How often such an effect is met before any log is looked at.
     pub occurrence: Occurrence,
+    /// Effects that it is a finer form of, by name.
+    pub refines: Vec<String>,
     /// What it does.
     pub law: Box<dyn Law>,
 }
@@ -51,6 +53,12 @@ impl Candidate {
     pub(super) fn is_plainer_than(&self, other: &Self) -> bool {
         let key = |of: &Self| (of.occurrence, of.law.parameters().len());
         key(self) < key(other)
+    }
+
+    /// Whether it is another one, but finer.
+    pub(super) fn is_finer_than(&self, other: &Self) -> bool {
+        let place = |of: &Self| (of.at.clone(), of.is_behind_spring);
+        self.refines.contains(&other.effect) && place(self) == place(other)
     }
 
     /// Its place in the file of a model, by the definitions of effects.

@@ -98,6 +98,7 @@ fn on_robot(effect: &Effect, robot: &Robot, model: &RegressionModel) -> Vec<Cand
             is_behind_spring: false,
             is_body: effect.at == EffectSite::Link && matches!(effect.law, EffectKindLaw::Moves(_)),
             occurrence: effect.occurrence,
+            refines: effect.refines.clone(),
             law: Box::new(RobotLaw { effect: law, is_of_drives }),
         })
     };
@@ -129,6 +130,7 @@ fn on_joint(
         is_behind_spring: false,
         is_body: false,
         occurrence: effect.occurrence,
+        refines: effect.refines.clone(),
         law,
     })
 }

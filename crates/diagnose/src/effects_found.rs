@@ -8,7 +8,7 @@ use super::gap::Gap;
 use super::given::is_driven;
 use super::hypothesis::Hypothesis;
 use super::law_curve::LawCurve;
-use super::rounds::Found;
+use super::rounds::{Found, Rival};
 use super::search::Search;
 use super::signals::Filters;
 use super::state::{MOST_Z, Setting, State};
@@ -36,8 +36,6 @@ pub struct EffectValue {
 pub struct Alternative {
     /// The candidate.
     pub candidate: usize,
-    /// The values of its parameters.
-    pub values: Vec<f64>,
     /// The log of the odds of the one that was found against it.
     pub log_odds: f64,
     /// Whether no motion could tell the two apart: by the symbolic regressor.
@@ -73,6 +71,8 @@ pub struct FoundEffect {
     pub is_named: bool,
     /// Effects that would do as well in its place.
     pub alternatives: Vec<Alternative>,
+    /// Finer forms of it that would: the logs do not ask for what they have more.
+    pub finer: Vec<Alternative>,
     /// Parameters of the model that do exactly what it does, together, whatever the motion; none
     /// where there are no such.
     pub exact: Vec<String>,
@@ -138,6 +138,9 @@ pub(super) fn found_effects(
         let taken = &after.taken[given + place];
         let reopened = setting.state(&without, &before.z);
         let errors = setting.errors(after, by_all, place);
+        let own = &setting.candidates[taken.candidate];
+        let is_finer = |one: &Alternative| setting.candidates[one.candidate].is_finer_than(own);
+        let (finer, alternatives) = near(found, place).partition(is_finer);
         FoundEffect {
             candidate: taken.candidate,
             log_odds: all.posterior - without.posterior,
@@ -150,7 +153,8 @@ pub(super) fn found_effects(
             stands_for: None,
             is_named: true,
             parameters: values(setting, after, given + place, |k| errors[k]),
-            alternatives: alternatives(found, place),
+            alternatives,
+            finer,
             exact: Vec::new(),
             experiment: None,
             curve: LawCurve::of(setting, after, taken),
@@ -159,22 +163,15 @@ pub(super) fn found_effects(
     (0..all.parts.len()).map(of).collect()
 }
 
-/// What else would do in a place.
-fn near(found: &Found, place: usize) -> impl Iterator<Item = &Hypothesis> {
-    let now = found.after.posterior;
+/// What else would do in a place, the most likely first.
+fn near(found: &Found, place: usize) -> impl Iterator<Item = Alternative> {
     let rivals = found.rivals.get(place).into_iter().flatten();
-    rivals.filter(move |one| now - one.posterior < policy::RIVAL)
-}
-
-/// The same as it is told, the most likely first.
-fn alternatives(found: &Found, place: usize) -> Vec<Alternative> {
-    let of = |one: &Hypothesis| Alternative {
-        candidate: one.parts[place].placed.candidate,
-        values: one.values(place),
-        log_odds: found.after.posterior - one.posterior,
+    let near = rivals.filter(|one| one.log_odds < policy::RIVAL);
+    near.map(|one| Alternative {
+        candidate: one.placed.candidate,
+        log_odds: one.log_odds,
         is_exact: false,
-    };
-    near(found, place).map(of).collect()
+    })
 }
 
 /// The parameters of an effect of a state, each with an error.
@@ -264,13 +261,12 @@ pub(super) fn separate(
 ) {
     let given = setting.given.len();
     for (place, one) in effects.iter_mut().enumerate() {
-        let rivals = near(found, place).zip(&one.alternatives);
-        let rivals = rivals.filter(|(_, other)| !other.is_exact).take(MOST_RIVALS);
-        let of = |(hypothesis, other): (&Hypothesis, &Alternative)| Placed {
-            values: other.values.clone(),
-            ..hypothesis.parts[place].placed.clone()
+        let is_asked = |rival: &&Rival| {
+            let mut others = one.alternatives.iter().filter(|other| !other.is_exact);
+            others.any(|other| other.candidate == rival.placed.candidate)
         };
-        let rivals: Vec<Placed> = rivals.map(of).collect();
+        let rivals = found.rivals[place].iter().filter(is_asked).take(MOST_RIVALS);
+        let rivals: Vec<Placed> = rivals.map(|rival| rival.placed.clone()).collect();
         if rivals.is_empty() {
             continue;
         }

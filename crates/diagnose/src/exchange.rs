@@ -2,7 +2,9 @@
 
 use super::candidate::Candidate;
 use super::hypothesis::{Hypothesis, Part};
+use super::rounds::Rival;
 use super::search::Search;
+use super::weighing::Placed;
 use denavit_evidence::policy;
 use std::collections::BTreeSet;
 
@@ -15,8 +17,8 @@ impl Search<'_> {
         mut now: Hypothesis,
         is_asked: &dyn Fn(&Candidate) -> bool,
         unmerged: &mut BTreeSet<[usize; 2]>,
-    ) -> (Hypothesis, Vec<Vec<Hypothesis>>) {
-        let unseen = |now: &Hypothesis| -> Vec<Option<Vec<Hypothesis>>> {
+    ) -> (Hypothesis, Vec<Vec<Rival>>) {
+        let unseen = |now: &Hypothesis| -> Vec<Option<Vec<Rival>>> {
             let asked = |place: usize| is_asked(self.candidate(now, place));
             (0..now.parts.len()).map(|place| (!asked(place)).then(Vec::new)).collect()
         };
@@ -59,7 +61,11 @@ impl Search<'_> {
                 all.retain(|one| {
                     one.posterior <= now.posterior || !self.is_plainer(&now, one, place)
                 });
-                rivals[place] = Some(all);
+                let rival = |one: &Hypothesis| Rival {
+                    placed: Placed { values: one.values(place), ..one.parts[place].placed.clone() },
+                    log_odds: now.posterior - one.posterior,
+                };
+                rivals[place] = Some(all.iter().map(rival).collect());
                 continue;
             };
             (now, exchanges) = (next, exchanges + 1);

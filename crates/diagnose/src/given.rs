@@ -49,6 +49,7 @@ pub fn given_candidates(laws: Vec<AddedLaw>) -> (Vec<Candidate>, Vec<Taken>) {
                 is_behind_spring,
                 is_body: false,
                 occurrence,
+                refines: Vec::new(),
                 law,
             },
             Taken { candidate, values },

@@ -6,6 +6,15 @@ use super::weighing::{Placed, Weighing};
 use denavit_evidence::policy;
 use std::collections::BTreeSet;
 
+/// What would do in the place of an effect.
+#[derive(Clone)]
+pub(super) struct Rival {
+    /// At its most likely values.
+    pub(super) placed: Placed,
+    /// The log of the odds of what is there against it, beside the others as they were then.
+    pub(super) log_odds: f64,
+}
+
 /// What a search found.
 pub(super) struct Found {
     /// The model without effects.
@@ -13,7 +22,7 @@ pub(super) struct Found {
     /// The model with what was found.
     pub(super) after: Hypothesis,
     /// For each effect that was found, others in its place.
-    pub(super) rivals: Vec<Vec<Hypothesis>>,
+    pub(super) rivals: Vec<Vec<Rival>>,
     /// How it came about.
     pub(super) steps: Vec<Step>,
     /// Whether as many effects were found as are allowed.

@@ -380,10 +380,7 @@ impl<'a> Weighing<'a> {
                 all += samples;
             }
         }
-        Unpredicted {
-            share: cut / f64::max(all, 1.0),
-            left: squares / f64::max(cut, 1.0),
-        }
+        Unpredicted { share: cut / f64::max(all, 1.0), left: squares / f64::max(cut, 1.0) }
     }
 
     /// The log of by how much data shrink that pass the filter of an effect.

@@ -72,6 +72,10 @@ fn section(page: &mut String, effect: &Effect) {
     for signature in signatures(effect) {
         let _ = write!(page, "Where it is small: $${signature}$$\n\n");
     }
+    if !effect.refines.is_empty() {
+        let names: Vec<String> = effect.refines.iter().map(|name| format!("`{name}`")).collect();
+        let _ = write!(page, "A finer form of: {}.\n\n", names.join(", "));
+    }
     if !effect.confused_with.is_empty() {
         page.push_str("Taken for:\n\n");
         for confusion in &effect.confused_with {

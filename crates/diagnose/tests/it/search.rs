@@ -105,6 +105,7 @@ fn candidates(model: &RegressionModel) -> Vec<Candidate> {
                     "smoothed_coulomb" => Occurrence::Uncommon,
                     _ => Occurrence::Common,
                 },
+                refines: Vec::new(),
                 law: Box::new(Handwritten {
                     parameters,
                     joint,

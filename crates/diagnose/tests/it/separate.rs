@@ -2,7 +2,8 @@
 //! found along the motions that are computed for them.
 
 use super::one_joint::{diagnosed, log};
-use denavit_diagnose::Verdict;
+use denavit_codegen::effect::find;
+use denavit_diagnose::{Alternative, Verdict};
 use denavit_excite::{ExciteOptions, check_trajectory};
 use denavit_plants::trajectory::Reference;
 use denavit_simulate::scenario::read_trajectory;
@@ -100,6 +101,26 @@ fn is_separated(
 fn friction_is_told_from_friction_of_a_load_that_hardly_changes() {
     let logs = Experience { about: 0.0, size: 0.02, noise: 0.02 };
     is_separated(|[_, rate, _]| 2.0 * rate, "viscous", "load_viscous", logs);
+}
+
+/// What a finer form has more is nothing that these logs ask for: it is no rival of the plain name,
+/// whose odds are those against others.
+#[test]
+fn finer_forms_of_a_law_are_no_rivals_of_it() {
+    let torque = |at: [f64; 3]| INERTIA * at[2] + WEIGHT * at[0].cos() + 0.5 * at[1].signum();
+    let logs = [(0.0, 1), (1.1, 2)]
+        .map(|(phase, seed)| log(&small(0.0, 0.02, phase), &torque, seed, 0.05));
+    let (found, candidates) = diagnosed(ROD, logs);
+    let [one] = &found.effects[..] else { panic!("{:?}", found.reasons) };
+    let name = |one: &Alternative| candidates[one.candidate].effect.as_str();
+    let [finer, others] =
+        [&one.finer, &one.alternatives].map(|all| all.iter().map(name).collect::<Vec<&str>>());
+    assert_eq!(candidates[one.candidate].effect, "coulomb");
+    assert!(finer.contains(&"asymmetric_coulomb"), "{finer:?}");
+    for one in others {
+        assert!(!find(one).expect("shipped").refines.contains(&"coulomb".to_owned()), "{one}");
+    }
+    assert_eq!(found.verdict, Verdict::Explained, "{:?}", found.reasons);
 }
 
 #[test]

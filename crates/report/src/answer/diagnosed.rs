@@ -140,6 +140,10 @@ fn effect(out: &mut String, shown: &Diagnosed, one: &FoundEffect) -> fmt::Result
         let exact = if other.is_exact { "; no motion tells them apart" } else { "" };
         writeln!(out, "  or {name}, odds {} against it{exact}", odds(other.log_odds))?;
     }
+    for other in &one.finer {
+        let name = &shown.candidates[other.candidate].effect;
+        writeln!(out, "  finer, not asked for: {name}, odds {} against it", odds(other.log_odds))?;
+    }
     match &one.experiment {
         Some(Ok(found)) => writeln!(
             out,

@@ -2,8 +2,8 @@
 
 use super::diagnosis_folder::{DiagnosisFolder, MODEL, REPORT, experiment_file};
 use denavit_diagnose::{
-    Candidate, EffectValue, FoundEffect, Gaps, GivenEffect, MotionGap, MotionGaps, Step, Visible,
-    Where,
+    Alternative, Candidate, EffectValue, FoundEffect, Gaps, GivenEffect, MotionGap, MotionGaps,
+    Step, Visible, Where,
 };
 use denavit_workflow::{Diagnosed, EffectUse};
 use serde::Serialize;
@@ -68,6 +68,8 @@ struct EffectJson<'a> {
     share: f64,
     parameters: BTreeMap<&'a str, ValueJson<'a>>,
     indistinguishable: Vec<OtherJson<'a>>,
+    /// Finer forms of it that the logs do not ask for.
+    finer: Vec<OtherJson<'a>>,
     /// Parameters of the model that do exactly the same, whatever the motion.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     exact_alias: &'a [String],
@@ -246,13 +248,13 @@ fn effect<'a>(
 ) -> EffectJson<'a> {
     let candidates = &shown.candidates;
     let own = &candidates[one.candidate];
-    let others = one.alternatives.iter().map(|other| OtherJson {
+    let other = |other: &Alternative| OtherJson {
         effect: &candidates[other.candidate].effect,
         at: &candidates[other.candidate].at,
         side: side(&candidates[other.candidate]),
         log_odds: other.log_odds,
         exact: other.is_exact,
-    });
+    };
     EffectJson {
         effect: &own.effect,
         at: &own.at,
@@ -262,7 +264,8 @@ fn effect<'a>(
         size: one.size,
         share: one.share,
         parameters: values(&one.parameters),
-        indistinguishable: others.collect(),
+        indistinguishable: one.alternatives.iter().map(other).collect(),
+        finer: one.finer.iter().map(other).collect(),
         exact_alias: &one.exact,
         separating_experiment: experiment(shown, folder, number, one),
     }

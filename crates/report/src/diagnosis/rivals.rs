@@ -4,7 +4,7 @@ use super::super::html::{Cell, HtmlTable, Part, Row, SceneMark};
 use super::super::jointed::{JointMotion, JointedRobot, RATE};
 use super::super::percent;
 use super::{DiagnosisPage, headings, odds, rough};
-use denavit_diagnose::{Experiment, FoundEffect};
+use denavit_diagnose::{Alternative, Experiment, FoundEffect};
 
 impl DiagnosisPage<'_> {
     /// The effects that would do in the place of one that was found, with their odds.
@@ -13,24 +13,22 @@ impl DiagnosisPage<'_> {
             Some(Ok(found)) => found.rivals.as_slice(),
             _ => &[],
         };
-        let rows: Vec<Row> = one
-            .alternatives
-            .iter()
-            .map(|other| {
-                let own = &self.candidates[other.candidate];
-                let told = if other.is_exact {
-                    "no motion: the equations are the same"
-                } else if separated.contains(&other.candidate) {
-                    "the motion below"
-                } else {
-                    "other logs: no motion was found"
-                };
-                let odds = Cell::number(other.log_odds, odds(other.log_odds));
-                let at = Cell::text(own.at_in_words());
-                let cells = vec![Cell::prose(&own.title), at, odds, Cell::prose(told)];
-                Row { cells, is_marked: other.is_exact }
-            })
-            .collect();
+        let told = |other: &Alternative| match other.is_exact {
+            true => "no motion: the equations are the same",
+            false if separated.contains(&other.candidate) => "the motion below",
+            false => "other logs: no motion was found",
+        };
+        let row = |other: &Alternative, told: &str| {
+            let own = &self.candidates[other.candidate];
+            let odds = Cell::number(other.log_odds, odds(other.log_odds));
+            let at = Cell::text(own.at_in_words());
+            let cells = vec![Cell::prose(&own.title), at, odds, Cell::prose(told)];
+            Row { cells, is_marked: other.is_exact }
+        };
+        let finer = "a finer form of it: these logs do not ask for more";
+        let finer = one.finer.iter().map(|other| row(other, finer));
+        let others = one.alternatives.iter().map(|other| row(other, told(other)));
+        let rows: Vec<Row> = others.chain(finer).collect();
         if rows.is_empty() {
             let text = "No other effect of the catalogue comes near: with any in its place these \
                         logs are less than a hundredth as likely."

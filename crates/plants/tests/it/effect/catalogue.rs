@@ -80,6 +80,7 @@ fn all_faults_of_a_file_are_told_at_once_with_their_place() {
     "v": {"unit": "rate", "description": "d", "bounds": [0, 1], "start": [2, "pi"]}
   },
   "torque": "a*q + w",
+  "refines": ["coulomb", "coulmb"],
   "moves": {"mass": 1}
 }"#,
     );
@@ -91,6 +92,7 @@ fn all_faults_of_a_file_are_told_at_once_with_their_place() {
         ("/parameters/v/start/0", "the value 2 is out of bounds: it cannot be above 1"),
         ("/parameters/v/start/1", "\"pi\" is not a rational number"),
         ("/torque", "nothing is called `w`"),
+        ("/refines/1", "no effect is called `coulmb`"),
         ("/moves", "an effect of the kind `torque` has no `moves`"),
     ] {
         let found = said.lines().any(|line| line.contains(place) && line.contains(what));

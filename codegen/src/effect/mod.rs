@@ -331,8 +331,8 @@ pub struct Effect {
     /// What the second joint of a pair needs besides [N m, N], in the symbols of the first one's
     /// law; none where only the first joint feels the effect.
     pub torque_2: Option<ExprId>,
-    /// Shipped effects that it is a finer form of: with some values of its parameters, or near
-    /// them, it is the same law.
+    /// Shipped effects of the same physics that it is a finer form of: with some values of its
+    /// parameters, or near them, it is that law.
     pub refines: Vec<String>,
     /// What it is taken for.
     pub confused_with: Vec<Confusion>,

@@ -7,7 +7,7 @@ use denavit_plants::effect::EffectLaw;
 use std::collections::BTreeSet;
 
 /// Of each: the law with its values, and what it refines with the same.
-const SAME: [(&str, &[f64], &str, &[f64]); 16] = [
+const SAME: [(&str, &[f64], &str, &[f64]); 17] = [
     ("arctangent_coulomb", &[2.0, 1e-5], "coulomb", &[2.0]),
     ("asymmetric_coulomb", &[2.0, 2.0], "coulomb", &[2.0]),
     ("bouc_wen", &[2.0, 0.0, 0.0, 1e-4], "coulomb", &[2.0]),
@@ -24,6 +24,7 @@ const SAME: [(&str, &[f64], &str, &[f64]); 16] = [
     ("shear_thinning", &[2.0, 1000.0], "viscous", &[2.0]),
     ("smoothed_coulomb", &[2.0, 1e-5], "coulomb", &[2.0]),
     ("stribeck_friction", &[2.0, 0.0, 0.1], "coulomb", &[2.0]),
+    ("stribeck_friction", &[0.0, 2.0, 0.1], "stribeck", &[2.0, 0.1]),
 ];
 
 #[test]

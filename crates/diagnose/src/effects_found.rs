@@ -55,6 +55,8 @@ pub struct FoundEffect {
     pub size: f64,
     /// The same with the values of the logs for training.
     pub(super) trained: f64,
+    /// Whether no motion of these has it act, so that all logs gave its values.
+    pub is_untrained: bool,
     /// The same in held-out logs.
     pub(super) judged: f64,
     /// The share of what can be explained that is open again without it, on held-out logs; 0 where
@@ -146,6 +148,7 @@ pub(super) fn found_effects(
             log_odds: all.posterior - without.posterior,
             size: search.size(all, place),
             trained: search.weighing.size(taken),
+            is_untrained: after.untrained.contains(&place),
             judged: judging.size(taken),
             share: share(gap(&reopened) - gap(after)),
             log_predicted: with_all - predicted(&reopened, &without),
@@ -265,8 +268,10 @@ pub(super) fn separate(
             let mut others = one.alternatives.iter().filter(|other| !other.is_exact);
             others.any(|other| other.candidate == rival.placed.candidate)
         };
-        let rivals = found.rivals[place].iter().filter(is_asked).take(MOST_RIVALS);
-        let rivals: Vec<Placed> = rivals.map(|rival| rival.placed.clone()).collect();
+        // a search that was stopped has looked for none
+        let rivals = found.rivals.get(place).into_iter().flatten().filter(is_asked);
+        let rivals = rivals.take(MOST_RIVALS).map(|rival| rival.placed.clone());
+        let rivals: Vec<Placed> = rivals.collect();
         if rivals.is_empty() {
             continue;
         }

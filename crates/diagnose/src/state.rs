@@ -49,6 +49,9 @@ pub(super) struct State {
     pub(super) taken: Vec<Taken>,
     /// For each effect the standard deviations of its parameters.
     pub(super) deviations: Vec<Vec<f64>>,
+    /// Effects that were found which no motion of the logs for training has act: they have their
+    /// values by all logs.
+    pub(super) untrained: Vec<usize>,
     /// The nominal model's own parameters, in their deviations.
     pub(super) z: Vec<f64>,
     /// What is left of the rows of the logs [N m, N].
@@ -74,18 +77,23 @@ impl<'a> Setting<'a> {
         weighing.base = weighing.base_beside(&parts);
         let search = Search::new(weighing, [self.candidates.len(), 0], Vec::new(), &mut |_| true);
         let fitted = search.settled(parts, None);
-        self.fitted_state(&search.weighing, &fitted)
+        self.fitted_state(&search.weighing, [found, &fitted])
     }
 
-    fn fitted_state(&self, weighing: &Weighing<'_>, fitted: &Hypothesis) -> State {
+    fn fitted_state(&self, weighing: &Weighing<'_>, by: [&Hypothesis; 2]) -> State {
+        let [found, fitted] = by;
         let z = fitted.weighed.own[..self.data.train.columns.len()].to_vec();
         let mut taken = weighing.given(&fitted.weighed.own);
         let beliefs = self.given.iter().map(|one| self.candidates[one.candidate].law.beliefs());
         let of_given = beliefs.map(|all| all.iter().map(|belief| belief.std).collect());
         let mut deviations: Vec<Vec<f64>> = of_given.collect();
+        let acts =
+            |&place: &usize| weighing.size(&found.taken(place, self.candidates)) > policy::WORTH;
+        let (trained, untrained): (Vec<usize>, _) = (0..fitted.parts.len()).partition(acts);
         for place in 0..fitted.parts.len() {
-            taken.push(fitted.taken(place, self.candidates));
-            deviations.push(fitted.deviations(place));
+            let own = by[usize::from(trained.contains(&place))];
+            taken.push(own.taken(place, self.candidates));
+            deviations.push(own.deviations(place));
         }
         let torques = self.data.map(|data| data.model_torques(&z, self.effects(&taken)));
         let left = |data: &Data<'a>, torques: &[ModelTorques]| {
@@ -95,7 +103,7 @@ impl<'a> Setting<'a> {
             train: left(self.data.train, &torques.train),
             held_out: left(self.data.held_out, &torques.held_out),
         };
-        State { taken, deviations, z, residual, torques }
+        State { taken, deviations, untrained, z, residual, torques }
     }
 
     /// Held-out logs alone, in which effects are weighed.

@@ -217,6 +217,12 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
         let why = format!("alias: others would do as well as {}", ambiguous.join(", "));
         return (Verdict::CannotTell, vec![why]);
     }
+    let untrained = names(&|one| one.is_untrained);
+    if !untrained.is_empty() {
+        let untrained = untrained.join(", ");
+        let why = format!("held-out logs alone have {untrained} act, and gave its values");
+        return (Verdict::PartlyExplained, vec![why]);
+    }
     let unjudged = names(&|one| one.judged < policy::WORTH && one.log_predicted < policy::NAMED);
     if !unjudged.is_empty() {
         let why = format!("no motion of held-out logs has {} act", unjudged.join(", "));

@@ -15,6 +15,7 @@ mod saturation;
 mod search;
 mod separate;
 mod signals;
+mod stops;
 mod transmission;
 mod turned;
 

@@ -4,7 +4,7 @@
 use denavit_codegen::alias::ExactAliases;
 use denavit_codegen::effect;
 use denavit_codegen::regressor::functions::modelled;
-use denavit_diagnose::{Candidate, Diagnosis, Moved, Request, candidates, diagnose};
+use denavit_diagnose::{Candidate, Diagnosis, Moved, Progress, Request, candidates, diagnose};
 use denavit_measure::Split;
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
@@ -44,9 +44,15 @@ pub(super) fn log(
 }
 
 /// What a model lacks by two logs, with names of candidates.
-pub(super) fn diagnosed(
+pub(super) fn diagnosed(source: &str, logs: [MeasuredLog; 2]) -> (Diagnosis, Vec<Candidate>) {
+    diagnosed_while(source, logs, &mut |_| true)
+}
+
+/// The same as long as `watch` says so.
+pub(super) fn diagnosed_while(
     source: &str,
     [train, held_out]: [MeasuredLog; 2],
+    watch: &mut dyn FnMut(&Progress) -> bool,
 ) -> (Diagnosis, Vec<Candidate>) {
     let robot = denavit_codegen::model::read("by hand", source.as_bytes()).expect("a model");
     let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
@@ -67,6 +73,6 @@ pub(super) fn diagnosed(
         most_effects: 6,
         filters: None,
     };
-    let found = diagnose(request, &mut |_| true).expect("a diagnosis");
+    let found = diagnose(request, watch).expect("a diagnosis");
     (found, all)
 }

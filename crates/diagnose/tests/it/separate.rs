@@ -1,19 +1,19 @@
 //! Experiments that separate names: two effects that short motions do not tell apart, and what is
 //! found along the motions that are computed for them.
 
-use super::one_joint::{diagnosed, log};
+use super::one_joint::{diagnosed, diagnosed_while, log};
 use denavit_codegen::effect::find;
-use denavit_diagnose::{Alternative, Verdict};
+use denavit_diagnose::{Alternative, Progress, Verdict};
 use denavit_excite::{ExciteOptions, check_trajectory};
 use denavit_plants::trajectory::Reference;
 use denavit_simulate::scenario::read_trajectory;
 use std::f64::consts::TAU;
 
 /// Mass 2 kg at 0.3 m with 0.05 kg m^2 about its centre, horizontal at 0.
-const INERTIA: f64 = 0.05 + 2.0 * 0.09;
-const WEIGHT: f64 = 2.0 * 0.3 * 9.81;
+pub(super) const INERTIA: f64 = 0.05 + 2.0 * 0.09;
+pub(super) const WEIGHT: f64 = 2.0 * 0.3 * 9.81;
 
-const ROD: &str = r#"{
+pub(super) const ROD: &str = r#"{
   "format": "denavit-model/1", "name": "rod", "convention": "standard",
   "gravity": [0, -9.81, 0],
   "links": [{
@@ -121,6 +121,20 @@ fn finer_forms_of_a_law_are_no_rivals_of_it() {
         assert!(!find(one).expect("shipped").refines.contains(&"coulomb".to_owned()), "{one}");
     }
     assert_eq!(found.verdict, Verdict::Explained, "{:?}", found.reasons);
+}
+
+/// A search that is stopped has looked for no rivals, so that nothing is to be told apart.
+#[test]
+fn a_search_that_is_stopped_has_no_rivals() {
+    let torque = |at: [f64; 3]| INERTIA * at[2] + WEIGHT * at[0].cos() + 0.5 * at[1].signum();
+    let logs = [(0.0, 1), (1.1, 2)]
+        .map(|(phase, seed)| log(&small(0.0, 0.02, phase), &torque, seed, 0.05));
+    let mut watch =
+        |progress: &Progress| !matches!(progress, Progress::Found(found) if !found.is_empty());
+    let (found, _) = diagnosed_while(ROD, logs, &mut watch);
+    let [one] = &found.effects[..] else { panic!("{:?}", found.reasons) };
+    assert!(one.alternatives.is_empty() && one.finer.is_empty() && one.experiment.is_none());
+    assert_eq!(found.verdict, Verdict::CannotTell);
 }
 
 #[test]

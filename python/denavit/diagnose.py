@@ -49,7 +49,7 @@ class FoundEffect:
     share: float
     parameters: Mapping[str, Mapping[str, Any]]
     indistinguishable: tuple[OtherName, ...] = of(OtherName)
-    finer: tuple[OtherName, ...] = of(OtherName)
+    finer: tuple[OtherName, ...] = of(OtherName, default=())
     """Finer forms of the same law that the logs do not ask for."""
     exact_alias: tuple[str, ...] = ()
     """Parameters of the model that do exactly the same, whatever the motion."""

@@ -13,9 +13,9 @@ use super::state::Taken;
 use denavit_evidence::{Spectrum, Terms, policy};
 
 impl Search<'_> {
-    /// By how much of itself an effect is larger or smaller late in logs than early where it acts, as
-    /// at the ends of a log if it acts at all times, root of mean square over logs; none where data do not ask for that, or ask for so
-    /// little that friction which warms up does as much.
+    /// By how much of itself an effect is larger or smaller late in logs than early where it acts,
+    /// as at the ends of a log if it acts at all times, root of mean square over logs; none where
+    /// data do not ask for that, or ask for so little that friction which warms up does as much.
     pub(super) fn change_in_time(&self, found: &Hypothesis, place: usize) -> Option<f64> {
         let candidate = found.parts[place].placed.candidate;
         let both = self.weighing.in_time(&Taken { candidate, values: found.values(place) });

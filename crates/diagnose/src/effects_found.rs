@@ -208,7 +208,7 @@ pub(super) fn tell_aliases(
     for one in found {
         let own = named(one.candidate);
         one.exact = aliases.of_parameters(own);
-        for other in &mut one.alternatives {
+        for other in one.alternatives.iter_mut().chain(&mut one.finer) {
             let is_behind = |one: usize| candidates[one].is_behind_spring;
             other.is_exact = is_behind(one.candidate) == is_behind(other.candidate)
                 && aliases.are_alike(own, named(other.candidate));

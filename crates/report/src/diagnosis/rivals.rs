@@ -25,7 +25,7 @@ impl DiagnosisPage<'_> {
             let cells = vec![Cell::prose(&own.title), at, odds, Cell::prose(told)];
             Row { cells, is_marked: other.is_exact }
         };
-        let finer = "a finer form of it: these logs do not ask for more";
+        let finer = "a finer form of it: these logs do not ask for it";
         let finer = one.finer.iter().map(|other| row(other, finer));
         let others = one.alternatives.iter().map(|other| row(other, told(other)));
         let rows: Vec<Row> = others.chain(finer).collect();
@@ -41,8 +41,8 @@ impl DiagnosisPage<'_> {
             ("odds against it", true),
             ("what would tell them apart", false),
         ]);
-        let caption = "Rivals: effects that would do in its place. Odds near 1 mean that these \
-                       logs do not tell."
+        let caption = "Rivals, effects that would do in its place, and finer forms of its law. \
+                       Odds near 1 mean that these logs do not tell."
             .to_owned();
         Part::Table(HtmlTable { caption, columns, rows })
     }

@@ -260,7 +260,7 @@ impl Law for JointLaw {
         let cut = measured.iter().zip(&torque).filter(is_cut);
         let given: Vec<f64> = cut.map(|(all, less)| all - less).collect();
         let share = given.len() as f64 / measured.len().max(1) as f64;
-        Unpredicted { share, left: rms(&given).powi(2), ..Unpredicted::default() }
+        Unpredicted { share, left: rms(&given).powi(2) }
     }
 
     fn following(&self) -> Option<(JointIndex, &EffectLaw)> {

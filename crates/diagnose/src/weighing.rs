@@ -374,7 +374,7 @@ impl<'a> Weighing<'a> {
             for (signals, torques) in data.signals.iter().zip(torques) {
                 let samples = signals.samples() as f64;
                 let motion = torques.motion(data.nominal, signals);
-                let Unpredicted { share, left, .. } = law.unpredicted(motion, values);
+                let Unpredicted { share, left } = law.unpredicted(motion, values);
                 cut += samples * share;
                 squares += samples * share * left;
                 all += samples;

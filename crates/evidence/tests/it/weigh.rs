@@ -210,7 +210,7 @@ fn what_takes_nearly_all_away_must_predict_the_rest() {
     for share in [0.7, 0.9, 0.97] {
         let left = scaled(1.0 - share)[0].iter().map(|row| row * row).sum::<f64>() / 400.0;
         let free = Terms { known: scaled(share), ..Terms::default() };
-        let unpredicted = Unpredicted { share, left, ..Unpredicted::default() };
+        let unpredicted = Unpredicted { share, left };
         let limited = Terms { unpredicted, ..free.clone() };
         let none = evidence(&[]);
         assert!(evidence(&[&free]) > none + 100.0, "{share}");

@@ -141,7 +141,10 @@ pub(super) fn found_effects(
         let reopened = setting.state(&without, &before.z);
         let errors = setting.errors(after, by_all, place);
         let own = &setting.candidates[taken.candidate];
-        let is_finer = |one: &Alternative| setting.candidates[one.candidate].is_finer_than(own);
+        // what the logs ask for is a rival, however fine
+        let is_finer = |one: &Alternative| {
+            setting.candidates[one.candidate].is_finer_than(own) && one.log_odds > -policy::NAMED
+        };
         let (finer, alternatives) = near(found, place).partition(is_finer);
         FoundEffect {
             candidate: taken.candidate,

@@ -20,7 +20,8 @@ pub struct Terms {
     /// What the effect says nothing of.
     pub unpredicted: Unpredicted,
     /// Of an effect that filters what was measured, the log of by how much data shrink: their
-    /// density is that of what passes, times this volume.
+    /// density is that of what passes, times this volume. Noise that what is computed answers to
+    /// has no such volume, and is not distinguished.
     pub log_volume: f64,
 }
 

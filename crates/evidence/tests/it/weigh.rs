@@ -218,9 +218,8 @@ fn what_takes_nearly_all_away_must_predict_the_rest() {
     }
 }
 
-/// A lag of what was measured leaves less of it, and predicts nothing by that: whether it is the
-/// noise of sensors or another one, the density of the data is that of what passes, times by how
-/// much data shrink.
+/// A lag of what was measured leaves less of it, and predicts nothing by that: the density of the
+/// data is that of what passes, times by how much data shrink.
 #[test]
 fn what_makes_data_smaller_predicts_nothing() {
     let mut random = Random::new(12);

@@ -30,6 +30,8 @@ pub(super) struct Spectra {
     pub(super) layout: Layout,
     /// The torque of each channel (root of mean square) [N m, N].
     pub(super) torque: Vec<f64>,
+    /// What was measured; all rows count.
+    pub(super) measured: Spectrum,
     /// Rows in time of each channel.
     rows: Vec<f64>,
     plans: Vec<(usize, Arc<dyn TransformType2And3<f64>>)>,
@@ -47,6 +49,7 @@ impl Spectra {
             lines: vec![Vec::new(); channels],
             layout: Layout { bands: vec![Vec::new(); channels], levels: vec![0.0; channels] },
             torque: vec![0.0; channels],
+            measured: Vec::new(),
             rows: vec![0.0; channels],
             plans: Vec::new(),
             weights: Vec::new(),
@@ -55,8 +58,7 @@ impl Spectra {
         let mut planner = DctPlanner::new();
         let mut torques: Vec<Vec<f64>> = vec![Vec::new(); channels];
         for (set, data) in sets.iter().enumerate() {
-            let weights = data.stretches.iter().map(|one| data.weights[one.range()].to_vec());
-            spectra.weights.push(weights.collect());
+            spectra.weights.push(data.stretches.iter().map(|one| vec![1.0; one.rows]).collect());
             let line_hz = |stretch: &Stretch| {
                 0.5 / (stretch.rows as f64 * data.signals[stretch.log.0].row_step_s())
             };
@@ -93,6 +95,12 @@ impl Spectra {
             spectra.layout.levels[channel] =
                 (policy::NOISE_LEVEL * spectra.torque[channel]).max(least);
         }
+        let rows: Vec<&[f64]> = sets.iter().map(|data| data.torque.as_slice()).collect();
+        spectra.measured = spectra.of_rows(sets, &rows, f64::INFINITY);
+        let weights = |data: &&Data<'_>| {
+            data.stretches.iter().map(|one| data.weights[one.range()].to_vec()).collect()
+        };
+        spectra.weights = sets.iter().map(weights).collect();
         spectra
     }
 

@@ -9,8 +9,9 @@ use super::signals::Signals;
 use super::span::Span;
 use super::spectra::Spectra;
 use super::state::{Effects, Taken};
-use denavit_evidence::{Base, Glance, Spectrum, Terms, Unpredicted, policy};
+use denavit_evidence::{Base, Filtered, Glance, Spectrum, Terms, Unpredicted, policy};
 use denavit_measure::JointIndex;
+use denavit_plants::effect::EffectLaw;
 
 /// An effect near values of its parameters, with what is believed of them.
 #[derive(Clone, Debug, PartialEq)]
@@ -311,8 +312,8 @@ impl<'a> Weighing<'a> {
             let up_to_hz = self.up_to(law.follows_accelerations());
             let (known, _) = self.spectra.of_response(&self.sets, &rows, up_to_hz);
             let unpredicted = self.unpredicted(law, &values);
-            let log_volume = self.log_volume(law, &values);
-            glance.see(&Terms { known, unpredicted, log_volume, ..Terms::default() }).gain
+            let filtered = self.filtered(law, &values);
+            glance.see(&Terms { known, unpredicted, filtered, ..Terms::default() }).gain
         };
         let mut gains: Vec<(f64, Start)> =
             all.drain(..).map(|start| (gain(&start), start)).collect();
@@ -362,7 +363,7 @@ impl<'a> Weighing<'a> {
             is_curved: parameters.iter().map(|parameter| !parameter.linear).collect(),
             believed: believed.collect(),
             unpredicted: self.unpredicted(law, &placed.values),
-            log_volume: self.log_volume(law, &placed.values),
+            filtered: self.filtered(law, &placed.values),
             columns,
         }
     }
@@ -383,12 +384,15 @@ impl<'a> Weighing<'a> {
         Unpredicted { share: cut / f64::max(all, 1.0), left: squares / f64::max(cut, 1.0) }
     }
 
-    /// The log of by how much data shrink that pass the filter of an effect.
-    fn log_volume(&self, law: &dyn Law, values: &[f64]) -> f64 {
-        law.following().map_or(0.0, |(joint, law)| {
+    /// The channel that an effect filters.
+    fn filtered(&self, law: &dyn Law, values: &[f64]) -> Vec<Filtered> {
+        let of = |(joint, law): (JointIndex, &EffectLaw)| {
             let lines = self.spectra.frequencies(joint.0);
-            lines.map(|hz| 0.5 * law.gain(hz, values).ln()).sum()
-        })
+            let log_gain = lines.map(|hz| 0.5 * law.gain(hz, values).ln()).collect();
+            let measured = self.spectra.measured[joint.0].clone();
+            Filtered { channel: joint.0, measured, log_gain }
+        };
+        law.following().map(of).into_iter().collect()
     }
 
     /// What an effect does at the joint where that is most, as a share of its torque.

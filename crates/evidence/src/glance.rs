@@ -2,6 +2,7 @@
 //! with those that the look leaves.
 
 use crate::base::{Base, fill};
+use crate::filtered::Filtered;
 use crate::layout::Spectrum;
 use crate::policy;
 use crate::terms::Terms;
@@ -114,16 +115,17 @@ impl Glance {
         let determinant: f64 = (0..count).map(|k| chol.l_dirty()[(k, k)].ln()).sum();
         let gain = |factors: &DVector<f64>| {
             let own = self.factor.solve(&(&right - &cross * factors));
-            let variances = self.variances(&|channel| match &touched[channel] {
+            let left = |channel: usize| match &touched[channel] {
                 Some((data, columns)) => data - columns * factors - &self.columns[channel] * &own,
                 None => &self.data[channel] - &self.columns[channel] * &own,
-            });
+            };
+            let variances = self.variances(&left);
             let gain = self.density(&variances)
                 - self.idle
                 - determinant
                 - 0.5 * factors.norm_squared()
                 - 0.5 * own.norm_squared()
-                + terms.log_volume
+                + self.log_volume(terms, &left)
                 - self.unpredicted(terms, &variances);
             if gain.is_finite() { gain } else { f64::NEG_INFINITY }
         };
@@ -155,6 +157,17 @@ impl Glance {
     fn density(&self, variances: &[f64]) -> f64 {
         let cells = self.cells.iter().zip(variances);
         cells.map(|((_, rows), variance)| -0.5 * counted(rows) * variance.ln()).sum()
+    }
+
+    /// The log of by how much terms shrink data, with what is left of each channel.
+    fn log_volume(&self, terms: &Terms, left: &dyn Fn(usize) -> DVector<f64>) -> f64 {
+        let of = |one: &Filtered| {
+            let mut left = left(one.channel);
+            let both = left.iter_mut().zip(&self.weights[one.channel]);
+            both.for_each(|(row, weight)| *row /= weight);
+            one.log_volume(self.cells.iter().cloned(), left.as_slice())
+        };
+        terms.filtered.iter().map(of).sum()
     }
 
     /// What terms do not earn, since they say nothing of some rows.

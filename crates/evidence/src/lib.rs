@@ -17,6 +17,7 @@
 
 mod base;
 mod condensed;
+mod filtered;
 mod gaussian;
 mod glance;
 mod layout;
@@ -28,6 +29,7 @@ mod weigh;
 
 pub use base::Base;
 pub use condensed::{Condensed, Told};
+pub use filtered::Filtered;
 pub use glance::{Glance, Seen};
 pub use layout::{Layout, Spectrum};
 pub use terms::Terms;

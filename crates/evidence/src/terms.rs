@@ -1,5 +1,6 @@
 //! What one effect adds to a model, near some values of its parameters.
 
+use crate::filtered::Filtered;
 use crate::layout::Spectrum;
 use crate::unpredicted::Unpredicted;
 
@@ -19,10 +20,8 @@ pub struct Terms {
     pub believed: Vec<f64>,
     /// What the effect says nothing of.
     pub unpredicted: Unpredicted,
-    /// Of an effect that filters what was measured, the log of by how much data shrink: their
-    /// density is that of what passes, times this volume. Noise that what is computed answers to
-    /// has no such volume, and is not distinguished.
-    pub log_volume: f64,
+    /// The channels that the effect filters.
+    pub filtered: Vec<Filtered>,
 }
 
 impl Terms {
@@ -56,16 +55,19 @@ impl Terms {
         both.lowest.extend(&other.lowest);
         both.is_curved.extend(&other.is_curved);
         both.believed.extend(&other.believed);
-        both.log_volume += other.log_volume;
+        both.filtered.extend(other.filtered.iter().cloned());
         both
     }
 
     /// The terms without the columns that are curved.
     pub(crate) fn linear(&self) -> Self {
         let places = (0..self.len()).filter(|&k| !self.is_curved[k]);
-        let (known, unpredicted) = (self.known.clone(), self.unpredicted.clone());
-        let log_volume = self.log_volume;
-        let mut linear = Self { known, unpredicted, log_volume, ..Self::default() };
+        let mut linear = Self {
+            known: self.known.clone(),
+            unpredicted: self.unpredicted.clone(),
+            filtered: self.filtered.clone(),
+            ..Self::default()
+        };
         for k in places {
             linear.columns.push(self.columns[k].clone());
             linear.lowest.push(self.lowest[k]);

@@ -13,6 +13,7 @@
 //! the density of what is believed of them there, and how much narrower the data make it.
 
 use crate::base::{Base, fill};
+use crate::filtered::Filtered;
 use crate::orthant::bounded;
 use crate::policy;
 use crate::terms::Terms;
@@ -79,12 +80,25 @@ impl Base {
         let (evidence, variances) = settled(&cells, &expected, start, rounds, &[]);
         let both = self.layout.cells().zip(&variances);
         let all: Vec<_> = both.map(|((channel, rows), v)| (channel, rows, *v)).collect();
-        let log_volume = terms.iter().map(|one| one.log_volume).sum::<f64>();
-        let evidence = evidence + log_volume - unearned(terms, &all);
         let posterior = Posterior::new(&cells, &variances, &[]);
+        let log_volume = self.log_volume(terms, &posterior.mean);
+        let evidence = evidence + log_volume - unearned(terms, &all);
         let mut weighed = posterior.told(terms, self.parameters, evidence, variances);
         weighed.own = self.own_factors(&weighed.own);
         weighed
+    }
+
+    /// The log of by how much terms shrink data, with these factors of all columns.
+    fn log_volume(&self, terms: &[&Terms], factors: &DVector<f64>) -> f64 {
+        let (own, width) = (self.parameters, factors.len() - self.parameters);
+        let of = |one: &Filtered| {
+            let columns = self.touched(terms, one.channel, width)?;
+            let of_own = &self.own[one.channel] * factors.rows(0, own);
+            let left =
+                columns.column(0) - of_own - columns.columns(1, width) * factors.rows(own, width);
+            Some(one.log_volume(self.layout.cells(), left.as_slice()))
+        };
+        terms.iter().flat_map(|one| &one.filtered).filter_map(of).sum()
     }
 
     /// The products of every cell with those of terms.

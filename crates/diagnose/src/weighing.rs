@@ -472,7 +472,7 @@ fn largest(sets: &[&Data<'_>], joint: JointIndex) -> Option<f64> {
 }
 
 /// The least and the largest position of a joint.
-fn range(sets: &[&Data<'_>], joint: JointIndex) -> [f64; 2] {
+pub(super) fn range(sets: &[&Data<'_>], joint: JointIndex) -> [f64; 2] {
     let all =
         sets.iter().flat_map(|data| &data.signals).flat_map(|signals| signals.q[joint.0].iter());
     all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &q| [low.min(q), high.max(q)])

@@ -65,8 +65,6 @@ pub struct FoundEffect {
     /// By how much more likely held-out logs are with it, as those that were fitted have it: a log
     /// of odds.
     pub log_predicted: f64,
-    /// By how much of itself it changes in the course of logs, where they show that it does.
-    pub change_in_time: Option<f64>,
     /// The joint or spring at which something without a name does what it is there for, if so.
     pub stands_for: Option<String>,
     /// Whether it fits: else it is only the nearest of the catalogue to something without a name.
@@ -155,7 +153,6 @@ pub(super) fn found_effects(
             judged: judging.size(taken),
             share: share(gap(&reopened) - gap(after)),
             log_predicted: with_all - predicted(&reopened, &without),
-            change_in_time: search.change_in_time(all, place),
             stands_for: None,
             is_named: true,
             parameters: values(setting, after, given + place, |k| errors[k]),

@@ -82,10 +82,9 @@ pub(super) fn judge(
     }
 }
 
-/// Whether an effect is a law, and not near to something else: it stands for nothing at another
-/// joint, no effect of its joint changes in time, and what is open beside it is little, in all logs
-/// and in held-out ones by the others, or no more than its sensors make while held-out logs ask for
-/// it. Noise of few steps of an encoder is as strong in slow bands as the motion is slow, not as in
+/// Whether an effect is a law, and not near to something else: it stands for nothing without a
+/// name, and what is open beside it is little, in all logs and in held-out ones by the others, or no
+/// more than its sensors make while held-out logs ask for it. Noise of few steps of an encoder is as strong in slow bands as the motion is slow, not as in
 /// fast ones.
 fn is_law(
     diagnosis: &Diagnosis,
@@ -93,9 +92,6 @@ fn is_law(
     open: &[Vec<f64>; 2],
     one: &FoundEffect,
 ) -> bool {
-    let joint = |one: &FoundEffect| setting.candidates[one.candidate].joint;
-    let mut there = diagnosis.effects.iter().filter(|other| joint(other) == joint(one));
-    let changes = there.any(|other| other.change_in_time.is_some());
     let is_noise = |left: Leftover, gaps: &Gaps| {
         let floor = gaps.floor.per_joint[left.equation].unwrap_or(0.0);
         left.share < floor && one.log_predicted > policy::NAMED
@@ -111,7 +107,7 @@ fn is_law(
         true => stands(&slow, one.size, train), // every drive has it, whatever else there is
         false => stands(&open[0], one.size, train) && is_judged(),
     };
-    stands && !changes && one.stands_for.is_none()
+    stands && one.stands_for.is_none()
 }
 
 fn is_unexplained(left: Leftover, explained: f64) -> bool {
@@ -293,16 +289,11 @@ fn doubts(
         }
         let most = open.iter().filter_map(|open| open_beside(setting, open, one));
         let most = most.max_by(|a, b| a.share.total_cmp(&b.share)).filter(|_| !one.is_named);
-        let why = match (one.change_in_time, &one.stands_for, most) {
-            (Some(change), ..) => format!(
-                "is only near to what is missing: in the course of a log that changes by {:.0} % \
-                 of its mean to either side, as the law does not",
-                100.0 * change
-            ),
-            (None, Some(place), _) => format!(
+        let why = match (&one.stands_for, most) {
+            (Some(place), _) => format!(
                 "stands for something at {place} that has no name: beside that nothing asks for it"
             ),
-            (None, None, Some(left)) => format!(
+            (None, Some(left)) => format!(
                 "is only near to what is missing: a residual of {:.1} % of the torque of {} is \
                  left beside it",
                 100.0 * left.share,

@@ -8,6 +8,7 @@
 //! So the log of the volume is T log |H|, with T the share of what is left that was measured, band
 //! by band. A sensor's noise has T = 1.
 
+use crate::policy;
 use std::ops::Range;
 
 /// What a filter does to one channel.
@@ -36,12 +37,17 @@ impl Filtered {
     }
 }
 
-/// The share of what is left that was measured: none to all of it.
+/// The share of what is left that was measured, from none to all of it: what is believed of that,
+/// with what rows say. What references ask for is in the rows as well, and hides it.
 fn share(measured: &[f64], left: &[f64]) -> f64 {
     let [measured, left] = [measured, left].map(tapered);
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let whole = dot(&left, &left).max(f64::MIN_POSITIVE);
-    (dot(&measured, &left) / whole).clamp(0.0, 1.0)
+    let [all, both, own] = [dot(&measured, &measured), dot(&measured, &left), dot(&left, &left)];
+    // tapering leaves half of the rows independent
+    let precision = 0.5 * left.len() as f64 * own / all.max(f64::MIN_POSITIVE);
+    let seen = both / own.max(f64::MIN_POSITIVE);
+    let [believed, weight] = [1.0, policy::ANSWERED.powi(-2)];
+    ((precision * seen + weight * believed) / (precision + weight)).clamp(0.0, 1.0)
 }
 
 /// Lines of rows that are tapered towards their ends (Hann): a motion whose ends differ is in all

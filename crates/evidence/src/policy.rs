@@ -104,6 +104,10 @@ pub const FAR_SHARE: f64 = 0.25;
 /// where it says nothing, -log Phi(-1) - log 2.
 pub const SIDE: [f64; 2] = [0.306_852_819_440_054_7, 1.147_874_464_449_318_4];
 
+/// How far from all the share of what is left may be that was measured: the noise of sensors is in it
+/// alone, and a disturbance as far as a controller answers it, which may be all of it or nothing.
+pub const ANSWERED: f64 = 1.0;
+
 /// What remains of the belief in small factors in a second first look: large effects are seen
 /// beside the noise that they leave.
 pub const UNBELIEVED: f64 = 1e-3;
@@ -122,14 +126,6 @@ pub const FLAT: f64 = 1.5;
 pub const LEFT: f64 = 8e-3;
 /// See [`FLAT`]. A plain law may leave that share of what a finer one does.
 pub const LEFT_OF_EXPLAINED: f64 = 0.35;
-
-/// The prior of how far an effect changes in the course of a log, as a share of itself, where it
-/// does.
-pub const CHANGE: f64 = 0.5;
-
-/// From this share on it is not the law that it is like: one end of a log has twice what the other
-/// one has. Friction that warms up changes less in logs of a minute.
-pub const CHANGED: f64 = 1.0 / 3.0;
 
 /// The least share of torque that an effect must do at one deviation to be looked at.
 pub const LEAST_FELT: f64 = 1e-7;

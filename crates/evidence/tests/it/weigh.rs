@@ -1,6 +1,6 @@
 //! The evidence of small problems against the density of all rows at once.
 
-use denavit_evidence::{Base, Glance, Layout, Spectrum, Terms, Unpredicted, Weighed};
+use denavit_evidence::{Base, Filtered, Glance, Layout, Spectrum, Terms, Unpredicted, Weighed};
 use denavit_numerics::Random;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
@@ -28,7 +28,7 @@ fn problem(seed: u64) -> (Spectrum, Vec<Spectrum>, Terms) {
         is_curved: vec![false; 2],
         believed: vec![0.3, 0.0],
         unpredicted: Unpredicted::default(),
-        log_volume: 0.0,
+        filtered: Vec::new(),
     };
     (data, own, terms)
 }
@@ -218,26 +218,39 @@ fn what_takes_nearly_all_away_must_predict_the_rest() {
     }
 }
 
-/// A lag of what was measured leaves less of it, and predicts nothing by that: the density of the
-/// data is that of what passes, times by how much data shrink.
+/// A lag of what was measured leaves less of its noise, and predicts nothing by that: the density of
+/// the data is that of what passes, times by how much data shrink. What moves the robot is in what
+/// is computed as well: there a lag predicts what it leaves.
 #[test]
-fn what_makes_data_smaller_predicts_nothing() {
+fn what_makes_noise_smaller_predicts_nothing() {
     let mut random = Random::new(12);
-    let data = vec![(0..400).map(|_| random.normal()).collect::<Vec<f64>>()];
+    let [noise, moved, other] =
+        [(); 3].map(|()| (0..400).map(|_| random.normal()).collect::<Vec<f64>>());
     let layout = Layout { bands: vec![vec![0..400]], levels: vec![0.02] };
-    let base = Base::new(layout, data.clone(), &[]);
-    let evidence = |terms: &[&Terms]| base.weigh(terms, None, 40).log_evidence;
-    for gain in [0.99, 0.8, 0.5_f64] {
-        let known = vec![data[0].iter().map(|row| (1.0 - gain) * row).collect()];
-        let log_volume = 400.0 * gain.ln();
-        let filtered = Terms { known, log_volume, ..Terms::default() };
+    let gained = |measured: &[f64], computed: &[f64], gain: f64, is_filter: bool| {
+        let data = measured.iter().zip(computed).map(|(y, c)| y - c).collect();
+        let base = Base::new(layout.clone(), vec![data], &[]);
+        let known = vec![measured.iter().map(|row| (1.0 - gain) * row).collect()];
+        let (channel, log_gain) = (0, vec![gain.ln(); 400]);
+        let filtered = Filtered { channel, measured: measured.to_vec(), log_gain };
+        let filtered = if is_filter { vec![filtered] } else { Vec::new() };
+        let terms = Terms { known, filtered, ..Terms::default() };
         let none = base.weigh(&[], None, 40);
+        let seen = Glance::new(&base, &[], &none.variances).see(&terms).gain;
+        [base.weigh(&[&terms], None, 40).log_evidence - none.log_evidence, seen]
+    };
+    for gain in [0.99, 0.8, 0.5_f64] {
         // but for what is believed of the size of noise
-        let little = -0.02 * log_volume;
-        let gained = evidence(&[&filtered]) - none.log_evidence;
-        assert!(gained.abs() < little, "{gain}: {gained}");
-        let seen = Glance::new(&base, &[], &none.variances).see(&filtered).gain;
-        assert!(seen.abs() < little, "{gain}: {seen}");
+        let little = -0.02 * 400.0 * gain.ln();
+        for gained in gained(&noise, &[0.0; 400], gain, true) {
+            assert!(gained.abs() < little, "{gain}: {gained}");
+        }
+        let both = moved.iter().zip(&other);
+        let computed: Vec<f64> = both.map(|(moved, other)| gain * moved + 0.2 * other).collect();
+        let [all, plain] = [true, false].map(|is| gained(&moved, &computed, gain, is));
+        for (all, plain) in all.into_iter().zip(plain) {
+            assert!((all - plain).abs() < -0.1 * 400.0 * gain.ln(), "{gain}: {all} {plain}");
+        }
     }
 }
 

@@ -15,9 +15,11 @@ use std::f64::consts::PI;
 /// Waves of a position; of each of two, the constant with them; and of one that changes in time.
 const WAVES: [usize; 3] = [12, 4, 6];
 
+type OfVelocity = fn(f64) -> f64;
+
 /// What functions of the position are multiplied by, and their first wave: what every drive has is
 /// the constant.
-const OF_VELOCITY: [(usize, fn(f64) -> f64); 5] =
+const OF_VELOCITY: [(usize, OfVelocity); 5] =
     [(1, |_| 1.0), (1, |v| v), (1, f64::signum), (0, |v| v * v), (0, |v| v * v.abs())];
 
 /// The degree of polynomials of position and velocity.

@@ -83,9 +83,9 @@ pub(super) fn judge(
 }
 
 /// Whether an effect is a law, and not near to something else: it stands for nothing without a
-/// name, and what is open beside it is little, in all logs and in held-out ones by the others, or no
-/// more than its sensors make while held-out logs ask for it. Noise of few steps of an encoder is as strong in slow bands as the motion is slow, not as in
-/// fast ones.
+/// name, and what is open beside it is little, in all logs and in held-out ones by the others, or
+/// no more than its sensors make while held-out logs ask for it. Noise of few steps of an encoder
+/// is as strong in slow bands as the motion is slow, not as in fast ones.
 fn is_law(
     diagnosis: &Diagnosis,
     setting: &Setting<'_>,

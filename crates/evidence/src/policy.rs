@@ -104,8 +104,8 @@ pub const FAR_SHARE: f64 = 0.25;
 /// where it says nothing, -log Phi(-1) - log 2.
 pub const SIDE: [f64; 2] = [0.306_852_819_440_054_7, 1.147_874_464_449_318_4];
 
-/// How far from all the share of what is left may be that was measured: the noise of sensors is in it
-/// alone, and a disturbance as far as a controller answers it, which may be all of it or nothing.
+/// How far from all of it the share of what is left may be that was measured: a sensor's noise is
+/// in what was measured alone, and a disturbance as far as a controller answers it, all or nothing.
 pub const ANSWERED: f64 = 1.0;
 
 /// What remains of the belief in small factors in a second first look: large effects are seen

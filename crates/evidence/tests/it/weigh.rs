@@ -218,9 +218,9 @@ fn what_takes_nearly_all_away_must_predict_the_rest() {
     }
 }
 
-/// A lag of what was measured leaves less of its noise, and predicts nothing by that: the density of
-/// the data is that of what passes, times by how much data shrink. What moves the robot is in what
-/// is computed as well: there a lag predicts what it leaves.
+/// A lag of what was measured leaves less of its noise, and predicts nothing by that: the density
+/// of the data is that of what passes, times by how much data shrink. What moves the robot is in
+/// what is computed as well: there a lag predicts what it leaves.
 #[test]
 fn what_makes_noise_smaller_predicts_nothing() {
     let mut random = Random::new(12);

@@ -5,6 +5,7 @@
 //! the play (`GivesWay::behind`). The load is that of the logged motion, with the friction that
 //! brakes the joint and not its drive.
 
+use super::data::ModelTorques;
 use super::joint_law::JointLaw;
 use super::law::{Motion, Response};
 use super::load_slopes::LoadSlopes;
@@ -71,7 +72,7 @@ struct Path<'m> {
 impl Path<'_> {
     /// How far the joint is behind its drive at each sample [rad, m].
     fn at(&self, law: &JointLaw, values: &[f64]) -> Vec<f64> {
-        let Motion { signals, load, drives, .. } = self.motion;
+        let Motion { signals, torques: ModelTorques { load, drives, .. }, .. } = self.motion;
         let of = |way: GivesWay| {
             let (_, braked) = way.split(drives[self.joint.0]);
             let both = load[self.joint.0].iter().zip(signals.qd[self.joint.0].iter());

@@ -66,7 +66,8 @@ impl ModelTorques {
             all.zip(own.gravity.iter().chain(&own.zeros)).for_each(|(sum, more)| *sum += more);
         }
         let motion = self.motion(nominal, signals);
-        let loads = laws().filter(|(law, values)| law.moves(values, motion.numbers).is_some());
+        let loads =
+            laws().filter(|(law, values)| law.moves(values, &motion.torques.numbers).is_some());
         let loads: Vec<PerJoint> =
             loads.map(|(law, values)| law.torque(motion, values).torque).collect();
         let factors: Vec<(JointIndex, Vec<f64>)> =

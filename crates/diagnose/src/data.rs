@@ -64,22 +64,23 @@ pub(super) struct Data<'a> {
 
 /// Torques of the model at the samples of one log.
 #[derive(Clone, Debug)]
-pub(super) struct ModelTorques {
-    /// phi of the model's parameters.
-    pub(super) phi: Phi,
-    /// The numbers of the model file.
-    pub(super) numbers: Vec<f64>,
-    /// Rigid bodies alone, with what effects add to them.
-    pub(super) load: PerJoint,
-    /// Their rates.
-    pub(super) load_rate: PerJoint,
-    /// Everything but effects; then, for each spring, what its joint takes less what it passes on.
-    pub(super) total: PerJoint,
+pub struct ModelTorques {
+    /// phi of the model's present parameters.
+    pub phi: Phi,
+    /// The present values of the numbers of the model file, in the order of the regression's.
+    pub numbers: Vec<f64>,
+    /// Torques of rigid bodies, without friction, with what effects add to them [N m, N].
+    pub load: PerJoint,
+    /// Their derivatives by time [N m/s, N/s].
+    pub load_rate: PerJoint,
+    /// All without effects; then, for each spring, what its joint takes less what it passes on.
+    pub total: PerJoint,
     /// The numbers of each joint's drive.
-    pub(super) drives: Vec<Drive>,
+    pub drives: Vec<Drive>,
     /// What laws are beside.
     pub(super) beside: Beside,
-    slopes: RefCell<Option<Rc<LoadSlopes>>>,
+    /// The slopes that were asked for last: laws of one joint are looked at one after the other.
+    pub(super) slopes: RefCell<Option<Rc<LoadSlopes>>>,
 }
 
 impl<'a> Data<'a> {
@@ -299,8 +300,6 @@ impl ModelTorques {
         nominal: &'m Nominal<'m>,
         signals: &'m Signals,
     ) -> Motion<'m> {
-        let Self { phi, numbers, load, load_rate, total, drives, beside, slopes } = self;
-        let model = (nominal, phi);
-        Motion { model, numbers, signals, load, load_rate, total, drives, beside, slopes }
+        Motion { nominal, signals, torques: self, total: &self.total }
     }
 }

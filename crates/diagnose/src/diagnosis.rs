@@ -59,7 +59,7 @@ pub struct Request<'a> {
 }
 
 /// Gaps of one set of logs.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gaps {
     /// Of the model as it is given.
     pub before: Gap,
@@ -85,7 +85,7 @@ impl Gaps {
 }
 
 /// What a model lacks.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Diagnosis {
     /// The answer in one word.
     pub verdict: Verdict,
@@ -275,25 +275,18 @@ fn told(
     let given = data.map(|data| setting.as_given(data));
     let [of_before, of_after] = [before, after].map(|state| &state.residual);
     Diagnosis {
-        verdict: Verdict::CannotTell,
-        reasons: Vec::new(),
         places: (0..nominal.equations()).map(|at| nominal.equation_name(at)).collect(),
         before: left(before),
         after: left(after),
         given: given_effects(setting, after),
-        effects: Vec::new(),
-        visible: Vec::new(),
-        leftovers: Vec::new(),
-        structures: Vec::new(),
-        is_left_at_reversals: false,
         steps: found.steps.clone(),
         train: Gaps::new(data.train, floors.train, &given.train, &of_after.train),
         held_out: Gaps::new(data.held_out, floors.held_out, &given.held_out, &of_after.held_out),
-        motion: None,
         curves: curves(data.held_out, [&given.held_out, &of_before.held_out, &of_after.held_out]),
         logged: logged(data.held_out),
         filters,
         driven: [before, after].map(|state| driven_names(setting, state)),
+        ..Diagnosis::default()
     }
 }
 

@@ -36,7 +36,7 @@ impl JointLaw {
         asked: Asked,
     ) -> Option<Response> {
         let (joint, signals, has_play) = (self.joint, motion.signals, self.law.has_play());
-        let (size, drive) = (rms(&motion.load[joint.0]), motion.drives[joint.0]);
+        let (size, drive) = (rms(&motion.torques.load[joint.0]), motion.torques.drives[joint.0]);
         let is_loaded = size >= LEAST_LOAD * rms(&motion.total[joint.0]);
         let way = self.law.gives_way(values)?;
         if signals.motor[joint.0].is_some() || !is_loaded {
@@ -54,7 +54,7 @@ impl JointLaw {
             both
         };
         let friction = signals.qd[joint.0].iter().map(|qd| drive.friction(*qd));
-        let loads = [load(&motion.load[joint.0]), load(&friction.collect::<Vec<f64>>())];
+        let loads = [load(&motion.torques.load[joint.0]), load(&friction.collect::<Vec<f64>>())];
         let passing = Passing {
             step_s: signals.log_step_s,
             qd: &signals.cell_means(&signals.qd[joint.0]),
@@ -85,7 +85,7 @@ impl JointLaw {
     /// way; none where nothing is to be compared.
     fn along_log(&self, motion: &Motion<'_>, values: &[f64], asked: Asked) -> Option<Response> {
         let measured = motion.signals.measured_within(self.joint)?;
-        let (tau, drive) = (measured.as_slice(), motion.drives[self.joint.0]);
+        let (tau, drive) = (measured.as_slice(), motion.torques.drives[self.joint.0]);
         let samples = JointSamples { tau, drive, ..samples(motion, self.joint, None) };
         let through = self.law.through(&samples, values)?;
         let gradient = match asked {

@@ -78,6 +78,9 @@ pub(super) struct Ambiguity<'a> {
     pub(super) others: Vec<Taken>,
 }
 
+/// The odds of a motion, its numbers, and the place of their space.
+type Tried = (f64, Vec<f64>, usize);
+
 /// A motion with what the names do there.
 struct Seen<'s, 'a> {
     search: Search<'a>,
@@ -155,18 +158,21 @@ impl Ambiguity<'_> {
 
     /// The motion of the largest odds of names that are there, with its space: the best of some at
     /// random, moved at random as long as that makes it better.
-    fn best(&self, spaces: &mut [Feasible], seed: u64) -> Option<(f64, Vec<f64>, usize)> {
-        let mut best: Option<(f64, Vec<f64>, usize)> = None;
-        let is_better = |best: &Option<(f64, Vec<f64>, usize)>, value: f64| {
-            value.is_finite() && best.as_ref().is_none_or(|(most, ..)| value > *most)
+    fn best(&self, spaces: &mut [Feasible], seed: u64) -> Option<Tried> {
+        let mut best: Option<Tried> = None;
+        let offer = |best: &mut Option<Tried>, feasible: &Feasible, x: Vec<f64>, space: usize| {
+            let value = self.value(feasible, &x, seed);
+            let most = best.as_ref().map_or(f64::NEG_INFINITY, |(most, ..)| *most);
+            let is_best = value.is_finite() && value > most;
+            if is_best {
+                *best = Some((value, x, space));
+            }
+            is_best
         };
         for start in 0..STARTS {
             let space = start % spaces.len();
-            let feasible = &mut spaces[space];
-            let Some(x) = feasible.random(start) else { continue };
-            let value = self.value(feasible, &x, seed);
-            if is_better(&best, value) {
-                best = Some((value, x, space));
+            if let Some(x) = spaces[space].random(start) {
+                offer(&mut best, &spaces[space], x, space);
             }
         }
         let mut random = Random::new(seed);
@@ -177,15 +183,9 @@ impl Ambiguity<'_> {
             // Also larger, until a limit is reached.
             let larger = 1.0 + reach * random.uniform();
             let moved = x.iter().map(|x| larger * x + reach * size * random.normal()).collect();
-            let feasible = &mut spaces[space];
-            let Some(moved) = feasible.within(moved) else { continue };
-            let value = self.value(feasible, &moved, seed);
-            if is_better(&best, value) {
-                best = Some((value, moved, space));
-                reach = f64::min(1.0, 1.3 * reach);
-            } else {
-                reach *= 0.85;
-            }
+            let Some(moved) = spaces[space].within(moved) else { continue };
+            let is_best = offer(&mut best, &spaces[space], moved, space);
+            reach = if is_best { f64::min(1.0, 1.3 * reach) } else { 0.85 * reach };
         }
         best
     }

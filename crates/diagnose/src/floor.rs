@@ -5,6 +5,7 @@ use super::rows::torques;
 use super::signals::Signals;
 use crate::policy::floor::{LEAST, UNREPEATABLE};
 use denavit_measure::condition::{Butterworth, Laps};
+use denavit_numerics::median;
 pub(super) use denavit_numerics::rms;
 
 /// The floor of one log, after the filter of the rows: the deviation of each joint's torque, then
@@ -71,9 +72,7 @@ pub(super) fn white_noise(signal: &[f64]) -> f64 {
     let mut smooth = signal.to_vec();
     filter.zero_phase(&mut smooth);
     let rough = usual(signal.iter().zip(&smooth).map(|(a, b)| a - b).collect());
-    let mut impulse = vec![0.0; 129];
-    impulse[64] = 1.0;
-    filter.zero_phase(&mut impulse);
+    let mut impulse = filter.zero_phase_impulse(64);
     impulse[64] -= 1.0;
     let gain = impulse.iter().map(|x| x * x).sum::<f64>().sqrt();
     rough / gain
@@ -82,9 +81,7 @@ pub(super) fn white_noise(signal: &[f64]) -> f64 {
 /// The deviation of a normal variable whose largest values may be something else: the median of its
 /// absolute value is 0.6745 of that.
 fn usual(values: Vec<f64>) -> f64 {
-    let mut sizes: Vec<f64> = values.into_iter().map(f64::abs).collect();
-    sizes.sort_by(f64::total_cmp);
-    sizes.get(sizes.len() / 2).copied().unwrap_or(0.0) / 0.6745
+    median(values.into_iter().map(f64::abs).collect()) / 0.6745
 }
 
 /// Usual deviation of a signal, from the differences of laps that follow each other.

@@ -10,7 +10,7 @@ pub(super) type Weight<'w> = &'w dyn Fn(usize) -> f64;
 ///
 /// Rows count alike, or for what is known of them: no model tells what friction is at velocity
 /// reversals and rests.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gap {
     /// Over all joints.
     pub all: f64,

@@ -62,16 +62,16 @@ pub(super) fn samples<'m>(
         q: &signals.q[joint.0],
         qd,
         qdd,
-        tau_load: &motion.load[joint.0],
-        tau_load_rate: &motion.load_rate[joint.0],
+        tau_load: &motion.torques.load[joint.0],
+        tau_load_rate: &motion.torques.load_rate[joint.0],
         tau: &motion.total[joint.0],
         ..JointSamples::default()
     };
     if let Some(other) = other {
         samples.q_2 = &signals.q[other.0];
         [samples.qd_2, samples.qdd_2] = signals.of_drive(other).map(Vec::as_slice);
-        samples.tau_load_2 = &motion.load[other.0];
-        samples.tau_load_rate_2 = &motion.load_rate[other.0];
+        samples.tau_load_2 = &motion.torques.load[other.0];
+        samples.tau_load_rate_2 = &motion.torques.load_rate[other.0];
     }
     samples
 }
@@ -102,7 +102,7 @@ impl JointLaw {
             let creep = motion.signals.creeping(joint);
             samples.creep = &creep;
             let mut equations = vec![joint.0];
-            if let Some(spring) = motion.model.0.spring_equation(joint)
+            if let Some(spring) = motion.nominal.spring_equation(joint)
                 && law.channel().is_none()
                 && law.side == SpringSide::Link
             {
@@ -131,7 +131,7 @@ impl JointLaw {
 
     /// What a spring need not pass on.
     fn beside_spring(&self, motion: &Motion<'_>, values: &[f64]) -> Response {
-        let Motion { model: (nominal, _), signals, .. } = motion;
+        let Motion { nominal, signals, .. } = motion;
         let both = nominal.spring_equation(self.joint).zip(signals.deflection(self.joint));
         let Some((equation, [q, qd])) = both else { return Response::default() };
         let samples = JointSamples { t: &signals.t, q: &q, qd: &qd, ..JointSamples::default() };
@@ -203,7 +203,7 @@ impl JointLaw {
             motion.signals.unbalanced(self.joint, &mut found);
         }
         if self.law.channel() != Some(Channel::Torque) || self.law.is_transmission() {
-            motion.beside.logged(&mut found);
+            motion.torques.beside.logged(&mut found);
         }
         found
     }
@@ -309,17 +309,21 @@ impl Law for RobotLaw {
         let signals = motion.signals;
         let [q, qd, qdd] = [&signals.q, &signals.qd, &signals.qdd]
             .map(|all| all.iter().map(|one| one.as_slice()).collect::<Vec<&[f64]>>());
-        let AddedTorques { mut torque, mut gradient } =
-            self.effect.torques([&q, &qd, &qdd], values, motion.numbers, &motion.beside.moves);
+        let AddedTorques { mut torque, mut gradient } = self.effect.torques(
+            [&q, &qd, &qdd],
+            values,
+            &motion.torques.numbers,
+            &motion.torques.beside.moves,
+        );
         // What moves the bodies is passed on by the springs.
         if !self.is_of_drives {
-            for spring in &motion.model.0.springs {
+            for spring in &motion.nominal.springs {
                 let all = gradient.iter_mut().chain([&mut torque]);
                 all.for_each(|joints| joints.push(joints[spring.joint.0].clone()));
             }
         }
         let mut found = Response { equations: (0..torque.len()).collect(), torque, gradient };
-        motion.beside.logged(&mut found);
+        motion.torques.beside.logged(&mut found);
         found
     }
 }

@@ -1,50 +1,39 @@
 //! What an effect does to the torques of a log: its law on numbers.
 
-use super::beside::Beside;
+use super::data::ModelTorques;
 use super::given::Belief;
 use super::load_slopes::LoadSlopes;
-use super::nominal::{Nominal, Phi};
+use super::nominal::Nominal;
 use super::rows::{PerJoint, of_axes, torques};
 use super::signals::Signals;
 use denavit_evidence::Unpredicted;
 use denavit_measure::JointIndex;
-use denavit_plants::effect::{Drive, EffectLaw, LawParameter, Moves};
-use std::cell::RefCell;
+use denavit_plants::effect::{EffectLaw, LawParameter, Moves};
 use std::rc::Rc;
 
 /// What a law may depend on: the motion of a log and the torques that the model gives it; those
 /// that were measured only where a law cuts them.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion<'a> {
-    /// The nominal model, and phi of its present parameters.
-    pub model: (&'a Nominal<'a>, &'a Phi),
-    /// The present values of the numbers of the model file, in the order of the regression's.
-    pub numbers: &'a [f64],
+    /// The nominal model.
+    pub nominal: &'a Nominal<'a>,
     /// Positions, rates and accelerations at the full rate.
     pub signals: &'a Signals,
-    /// Torques of rigid bodies, without friction, with what effects add to them [N m, N].
-    pub load: &'a PerJoint,
-    /// Their derivatives by time [N m/s, N/s].
-    pub load_rate: &'a PerJoint,
-    /// All torques of the model without effects [N m, N].
+    /// What the model gives the motion.
+    pub torques: &'a ModelTorques,
+    /// All of that without effects, or the part that a gain is asked of [N m, N].
     pub total: &'a PerJoint,
-    /// The numbers of each joint's drive.
-    pub drives: &'a [Drive],
-    /// What laws are beside.
-    pub(super) beside: &'a Beside,
-    /// The slopes that were asked for last: laws of one joint are looked at one after the other.
-    pub(super) slopes: &'a RefCell<Option<Rc<LoadSlopes>>>,
 }
 
 impl Motion<'_> {
     /// What loads change by where a joint moves a little otherwise.
     pub(super) fn load_slopes(&self, joint: JointIndex) -> Rc<LoadSlopes> {
-        let last = self.slopes.borrow().clone().filter(|slopes| slopes.joint == joint);
+        let Self { nominal, signals, torques: ModelTorques { phi, slopes, .. }, .. } = self;
+        let last = slopes.borrow().clone().filter(|slopes| slopes.joint == joint);
         last.unwrap_or_else(|| {
-            let (nominal, phi) = self.model;
-            let slopes = Rc::new(LoadSlopes::new(nominal, self.signals, phi, joint));
-            self.slopes.replace(Some(Rc::clone(&slopes)));
-            slopes
+            let own = Rc::new(LoadSlopes::new(nominal, signals, phi, joint));
+            slopes.replace(Some(Rc::clone(&own)));
+            own
         })
     }
 
@@ -52,27 +41,27 @@ impl Motion<'_> {
     pub(super) fn part(&self, is_asked: bool) -> PerJoint {
         let of_joint = |joint: usize| {
             let (inertia, [_, qdd]) =
-                (self.drives[joint].inertia, self.signals.of_drive(JointIndex(joint)));
+                (self.torques.drives[joint].inertia, self.signals.of_drive(JointIndex(joint)));
             let load = self.own_load(joint).zip(qdd);
             let asked = load.map(|(load, qdd)| load + inertia * qdd);
             let both = asked.zip(&self.total[joint]);
             both.map(|(asked, total)| if is_asked { asked } else { total - asked }).collect()
         };
-        (0..self.drives.len()).map(of_joint).collect()
+        (0..self.torques.drives.len()).map(of_joint).collect()
     }
 
     /// Torques of the model's own bodies [N m, N].
     fn own_load(&self, joint: usize) -> impl Iterator<Item = f64> {
-        let more = self.beside.loads.get(joint).into_iter().flatten();
+        let more = self.torques.beside.loads.get(joint).into_iter().flatten();
         let more = more.copied().chain(std::iter::repeat(0.0));
-        self.load[joint].iter().zip(more).map(|(load, more)| load - more)
+        self.torques.load[joint].iter().zip(more).map(|(load, more)| load - more)
     }
 
     /// What bodies ask of all equations more in another motion, whose drives move as in this one
     /// [N m, N].
     pub(super) fn loads_beyond(&self, signals: &Signals) -> PerJoint {
-        let (nominal, phi) = self.model;
-        let mut loads = of_axes(nominal, signals, &phi.loads, true);
+        let nominal = self.nominal;
+        let mut loads = of_axes(nominal, signals, &self.torques.phi.loads, true);
         for (joint, load) in loads.iter_mut().enumerate() {
             load.iter_mut().zip(self.own_load(joint)).for_each(|(load, own)| *load -= own);
         }
@@ -83,17 +72,17 @@ impl Motion<'_> {
 
     /// The inertia of the bodies about a joint where all joints are at 0 [kg m^2, kg].
     pub(super) fn inertia_at_zero(&self, joint: JointIndex) -> f64 {
-        let (nominal, phi) = self.model;
-        let joints = nominal.model.joints.len();
+        let (model, ModelTorques { phi, drives, .. }) = (self.nominal.model, self.torques);
+        let joints = model.joints.len();
         let mut both = vec![vec![0.0; 2]; 3 * joints];
         both[2 * joints + joint.0][1] = 1.0;
-        let torques = nominal.model.torques(&both, &phi.axes).swap_remove(joint.0);
-        torques[1] - torques[0] - self.drives[joint.0].inertia
+        let torques = model.torques(&both, &phi.axes).swap_remove(joint.0);
+        torques[1] - torques[0] - drives[joint.0].inertia
     }
 
     /// The torques that the model without effects gives another motion [N m, N].
     pub fn torques_of(&self, signals: &Signals) -> PerJoint {
-        torques(self.model.0, signals, self.model.1)
+        torques(self.nominal, signals, &self.torques.phi)
     }
 }
 

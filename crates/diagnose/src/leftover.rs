@@ -7,6 +7,7 @@ use super::hypothesis::Hypothesis;
 use super::spectra::Spectra;
 use super::weighing::{Weighing, add};
 use denavit_evidence::policy;
+use denavit_numerics::median;
 
 /// The excess of one channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,9 +29,7 @@ pub(super) fn leftovers(spectra: &Spectra, variances: &[f64]) -> Vec<Leftover> {
         // the fastest band is where the filter already takes away
         let inner = &all[..all.len().saturating_sub(1)];
         let fast = &inner[inner.len() / 2..];
-        let mut levels: Vec<f64> = fast.iter().map(|(_, variance)| *variance).collect();
-        levels.sort_by(f64::total_cmp);
-        let flat = policy::FLAT * levels.get(levels.len() / 2).copied().unwrap_or(0.0);
+        let flat = policy::FLAT * median(fast.iter().map(|(_, variance)| *variance).collect());
         let squares = inner.iter().map(|(rows, variance)| rows * (variance - flat).max(0.0));
         Leftover { equation, share: spectra.share_of_squares(equation, squares.sum()) }
     };

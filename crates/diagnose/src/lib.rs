@@ -59,6 +59,7 @@ mod worth;
 pub use candidate::Candidate;
 pub use catalogue::{candidates, spring_candidates};
 pub use curve::{Curve, LoggedMotion};
+pub use data::ModelTorques;
 pub use diagnosis::{Diagnosis, Gaps, Progress, Request, diagnose};
 pub use effects_found::{Alternative, EffectValue, FoundEffect, GivenEffect};
 pub use elastic::{BeforeSprings, Spring, before_springs};

@@ -93,12 +93,11 @@ impl<'a> Search<'a> {
     pub(super) fn step(&self, now: &Hypothesis, all: &[Hypothesis]) -> Option<Step> {
         let worth = |one: &Hypothesis| self.is_worth(now, one, one.parts.len() - 1);
         let best = all.iter().find(|one| worth(one)).or(all.first())?;
-        let added = best.parts.last()?.placed.candidate;
-        let log_odds = best.posterior - now.posterior;
-        let others = all.iter().filter_map(|one| {
-            let candidate = one.parts.last()?.placed.candidate;
-            (candidate != added).then_some((candidate, one.posterior - now.posterior))
-        });
+        let odds = |one: &Hypothesis| {
+            Some((one.parts.last()?.placed.candidate, one.posterior - now.posterior))
+        };
+        let (added, log_odds) = odds(best)?;
+        let others = all.iter().filter_map(odds).filter(|(candidate, _)| *candidate != added);
         Some(Step {
             added,
             is_taken: worth(best) && log_odds > policy::NAMED,

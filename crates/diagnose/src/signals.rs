@@ -18,7 +18,7 @@ use std::ops::Range;
 use std::rc::Rc;
 
 /// The filters of a diagnosis.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Filters {
     /// Cutoff of the filter of positions \[Hz\].
     pub motion_hz: f64,
@@ -452,10 +452,7 @@ impl Signals {
 
     /// The share of the deviation of white noise that passes the filter.
     pub fn noise_gain(&self) -> f64 {
-        let reach = 2 * self.filter.settling();
-        let mut impulse = vec![0.0; 2 * reach + 1];
-        impulse[reach] = 1.0;
-        self.filter.zero_phase(&mut impulse);
+        let impulse = self.filter.zero_phase_impulse(2 * self.filter.settling());
         impulse.iter().map(|x| x * x).sum::<f64>().sqrt()
     }
 }

@@ -14,7 +14,7 @@ use denavit_evidence::policy;
 use denavit_identify::doubt::MisreadColumns;
 
 /// The answer in one word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Verdict {
     /// What is left is noise.
     NothingMissing,
@@ -25,6 +25,7 @@ pub enum Verdict {
     /// More than noise is left, and no effect of the catalogue explains it.
     Unexplained,
     /// The logs do not say.
+    #[default]
     CannotTell,
 }
 

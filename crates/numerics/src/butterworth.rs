@@ -115,7 +115,15 @@ impl Butterworth {
         self.zero_phase_lanes(signal.as_chunks_mut::<1>().0);
     }
 
-    /// The same for signals side by side, each to the bit what it is alone. Each waits for its own
+    /// What both passes make of a sample of 1 among so many zeros on either side.
+    pub fn zero_phase_impulse(&self, reach: usize) -> Vec<f64> {
+        let mut impulse = vec![0.0; 2 * reach + 1];
+        impulse[reach] = 1.0;
+        self.zero_phase(&mut impulse);
+        impulse
+    }
+
+    /// [`Self::zero_phase`] of signals side by side, each to the bit what it is alone. Each waits for its own
     /// last sample and for no other's, so that a few take hardly longer than one.
     pub fn zero_phase_lanes<const LANES: usize>(&self, signals: &mut [[f64; LANES]]) {
         let Some((&first, &last)) = signals.first().zip(signals.last()) else { return };

@@ -7,7 +7,7 @@
 //! - [`least_squares`]: rows condensed to triangles as they come, and what follows from them
 //! - [`interval_factor`], [`least_by_chance`]: what chance makes of errors and variances
 //! - [`long_run`], [`time_alike`]: variances and samples where neighbours are alike
-//! - [`rms`], [`products`]: the root of a mean square, products of two signals
+//! - [`rms`], [`mean`], [`variance`], [`median`], [`products`]: numbers of a signal, or of two
 //! - [`derivative`]: central differences; [`between`], [`cubic`]: a signal between its samples
 //! - [`extremes`]: the rows of long columns that a picture needs
 //! - [`envelope`]: what is between the ends of a signal that chatters
@@ -36,4 +36,6 @@ pub use extremes::extremes;
 pub use minimum_norm::MinimumNorm;
 pub use random::Random;
 pub use text::{percent, short};
-pub use variances::{interval_factor, least_by_chance, long_run, products, rms, time_alike};
+pub use variances::{
+    interval_factor, least_by_chance, long_run, mean, median, products, rms, time_alike, variance,
+};

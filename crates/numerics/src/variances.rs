@@ -14,10 +14,26 @@ pub fn rms(values: impl IntoIterator<Item = impl Borrow<f64>>) -> f64 {
     (sum / count.max(1) as f64).sqrt()
 }
 
+/// The mean; 0 of nothing.
+pub fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+/// The mean square of what values differ from their mean by; 0 of nothing.
+pub fn variance(values: &[f64]) -> f64 {
+    products(values, values)[1] / values.len().max(1) as f64
+}
+
+/// The middle one of values by size, of two the larger; 0 of nothing.
+pub fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    values.sort_unstable_by(f64::total_cmp);
+    values.get(middle).copied().unwrap_or(0.0)
+}
+
 /// The sums of the products of two signals without their means, and of the squares of both: a b,
 /// a^2, b^2.
 pub fn products(a: &[f64], b: &[f64]) -> [f64; 3] {
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
     let (at, bt) = (mean(a), mean(b));
     let apart = a.iter().zip(b).map(|(a, b)| (a - at, b - bt));
     apart.fold([0.0; 3], |[ab, aa, bb], (a, b)| [ab + a * b, aa + a * a, bb + b * b])

@@ -39,8 +39,8 @@ impl Law for Handwritten {
                 q: signals.q[joint][k],
                 qd: signals.qd[joint][k],
                 qdd: signals.qdd[joint][k],
-                load: motion.load[joint][k],
-                load_rate: motion.load_rate[joint][k],
+                load: motion.torques.load[joint][k],
+                load_rate: motion.torques.load_rate[joint][k],
             };
             let (value, slopes) = (self.at)(sample, values);
             torque.push(value);

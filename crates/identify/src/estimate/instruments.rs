@@ -12,7 +12,7 @@ use crate::error::{Error, ErrorKind};
 use crate::policy::instruments::{MOVES, OTHER};
 use denavit_measure::condition::Conditioned;
 use denavit_numerics::least_squares::Triangle;
-use denavit_numerics::long_run;
+use denavit_numerics::{long_run, products};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
@@ -61,9 +61,7 @@ fn unlike() -> Error {
 fn other_motion(log: &Conditioned, instrument: &Conditioned) -> f64 {
     let of_joint = |(q, other): (&Vec<f64>, &Vec<f64>)| {
         let (q, other) = (&q[log.range.clone()], &other[instrument.range.clone()]);
-        let mean = q.iter().sum::<f64>() / q.len().max(1) as f64;
-        let variance = q.iter().map(|q| (q - mean).powi(2)).sum::<f64>();
-        (variance, q.iter().zip(other).map(|(q, other)| (q - other).powi(2)).sum::<f64>())
+        (products(q, q)[1], q.iter().zip(other).map(|(q, other)| (q - other).powi(2)).sum::<f64>())
     };
     let all: Vec<(f64, f64)> = log.q.iter().zip(&instrument.q).map(of_joint).collect();
     let most = all.iter().map(|(variance, _)| *variance).fold(0.0, f64::max);

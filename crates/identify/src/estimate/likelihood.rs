@@ -10,6 +10,7 @@ use super::weights::ByLog;
 use crate::policy::likelihood::LEAST_TORQUE_SHARE;
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
+use denavit_numerics::mean;
 use denavit_plants::regression::{RegressionModel, RegressionRows};
 
 /// Samples in a block.
@@ -42,9 +43,8 @@ impl Variance {
     /// The noise of the torques themselves, of residuals with given deviations, by log and joint.
     pub(super) fn torque_noise(&self, residual: &ByLog) -> ByLog {
         let of_joint = |(rows, deviation): (&Vec<f64>, &f64)| {
-            let mean = rows.iter().sum::<f64>() / rows.len().max(1) as f64;
             let all = deviation * deviation;
-            (all - mean).max(LEAST_TORQUE_SHARE * all).sqrt()
+            (all - mean(rows)).max(LEAST_TORQUE_SHARE * all).sqrt()
         };
         let of_log = |(rows, residual): (&Vec<Vec<f64>>, &Vec<f64>)| {
             rows.iter().zip(residual).map(of_joint).collect()

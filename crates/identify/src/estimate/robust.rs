@@ -9,6 +9,7 @@ use crate::policy::robust::{BISQUARE, HUBER, LEAST_SLOPE};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_numerics::least_squares::solve;
+use denavit_numerics::median;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
 
@@ -157,10 +158,6 @@ fn counted_residuals(
 }
 
 /// The deviation of residuals of these sizes, if they are normal.
-fn deviation(mut sizes: Vec<f64>) -> f64 {
-    if sizes.is_empty() {
-        return 0.0;
-    }
-    let middle = sizes.len() / 2;
-    1.4826 * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1
+fn deviation(sizes: Vec<f64>) -> f64 {
+    1.4826 * median(sizes)
 }

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind};
 use crate::policy::laps::{COMPARED, DIGITS, FEWEST, LEFT_BY_LAP, MOVES, REPEATS, SETTLED};
-use denavit_numerics::short;
+use denavit_numerics::{short, variance};
 use std::ops::Range;
 
 /// Samples that a search for the period looks at, at most.
@@ -260,9 +260,4 @@ fn refined(compared: &Compared<'_>, period: f64, count: usize) -> f64 {
         laps *= 2;
     }
     period
-}
-
-fn variance(values: &[f64]) -> f64 {
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64
 }

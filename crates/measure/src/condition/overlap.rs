@@ -2,7 +2,7 @@
 
 use super::Conditioned;
 use crate::policy::overlap::{MOVES, OVERLAP, PART, SAME};
-use denavit_numerics::rms;
+use denavit_numerics::{rms, variance};
 use std::ops::Range;
 
 /// Samples that are looked at before all are.
@@ -28,11 +28,6 @@ impl Pair<'_> {
         }
         true
     }
-}
-
-fn rms_about_mean(values: &[f64]) -> f64 {
-    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-    rms(values.iter().map(|value| value - mean))
 }
 
 impl Conditioned {
@@ -79,7 +74,7 @@ impl<'a> Both<'a> {
         let position = |joint: usize| Pair {
             long: &long.q[joint],
             short: &short.q[joint],
-            most: SAME * rms_about_mean(&short.q[joint][inner.clone()]) + 1e-12,
+            most: SAME * variance(&short.q[joint][inner.clone()]).sqrt() + 1e-12,
         };
         let torque = |joint: usize| {
             let (long, short) = (long.torque[joint].as_ref()?, short.torque[joint].as_ref()?);
@@ -124,7 +119,7 @@ impl<'a> Both<'a> {
         if !both().all(|pair| pair.is_same(shift, (first..end).step_by(step))) {
             return false;
         }
-        let inside = |pair: &Pair<'_>| rms_about_mean(&pair.short[first..end]);
+        let inside = |pair: &Pair<'_>| variance(&pair.short[first..end]).sqrt();
         let moves = |pair: &Pair<'_>| inside(pair) * SAME > MOVES * pair.most;
         // all rests look alike
         self.positions.iter().any(moves) && both().all(|pair| pair.is_same(shift, first..end))

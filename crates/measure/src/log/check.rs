@@ -6,7 +6,7 @@ use crate::policy::check::{
     ABOVE_ROUNDING, DIGIT, FAR_BEYOND, FASTEST_STEP_S, HOUR_S, IN_STEPS, LARGEST_ANGLE_RAD,
     MOST_STEPS, OTHER, ROUNDED, ROUNDING, SAME, SATURATED, SINGLE, SLOWEST_STEP_S, WHOLE,
 };
-use denavit_numerics::products;
+use denavit_numerics::{mean, products};
 use denavit_plants::regression::RegressionJoint;
 
 /// What looks wrong, and what is worth a remark.
@@ -217,7 +217,7 @@ fn level(signal: &[f64]) -> Vec<f64> {
     let at = |index: usize| index as f64 - middle;
     let squares: f64 = (0..signal.len()).map(|index| at(index).powi(2)).sum();
     let along: f64 = signal.iter().enumerate().map(|(index, value)| at(index) * value).sum();
-    let mean = signal.iter().sum::<f64>() / signal.len() as f64;
+    let mean = mean(signal);
     let slope = along / squares.max(f64::MIN_POSITIVE);
     signal.iter().enumerate().map(|(index, value)| value - mean - slope * at(index)).collect()
 }

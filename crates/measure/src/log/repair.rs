@@ -3,6 +3,7 @@
 use super::fault::{LogFault, LogRemark};
 use crate::policy::repair::{MAX_JITTER, MAX_MISSING, RESAMPLED_JITTER};
 use denavit_logs::Table;
+use denavit_numerics::median;
 
 /// Fewer rows make no log.
 const FEWEST_ROWS: usize = 4;
@@ -41,7 +42,7 @@ pub(super) fn even(mut table: Table, names: &[String]) -> Result<Even, Vec<LogFa
     fill_cells(&mut table, names, &mut faults, &mut remarks);
     let time = &table.columns[0];
     let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let median = median(&mut steps.clone());
+    let median = median(steps.clone());
     let mut gaps = Gaps::default();
     let mut scatter = 0.0;
     for (row, step) in steps.iter_mut().enumerate() {
@@ -104,11 +105,6 @@ impl Gaps {
             (self.longest, self.row) = (missing, row);
         }
     }
-}
-
-fn median(values: &mut [f64]) -> f64 {
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// Rows that say the same as the one before go; others with its time, or an earlier one, are

@@ -9,7 +9,7 @@ use super::effects_found::{
     tell_aliases,
 };
 use super::elastic::Spring;
-use super::error::{Cause, Error};
+use super::error::Error;
 use super::excitation::{Visible, visible};
 use super::floor::{NoiseFloor, floors};
 use super::gap::{Gap, Weight, share_closed};
@@ -311,7 +311,7 @@ const MOST_MOVES: usize = 2;
 fn conditioned(logs: Vec<MeasuredLog>, filters: Filters) -> Result<Vec<Signals>, Error> {
     let of = |log: MeasuredLog| {
         let file = log.file.clone();
-        Signals::new(log, filters).map_err(|error| Cause::Condition(file, error).into())
+        Signals::new(log, filters).map_err(|error| Error::condition(error).in_log(&file))
     };
     logs.into_iter().map(of).collect()
 }

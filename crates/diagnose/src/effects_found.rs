@@ -43,7 +43,7 @@ pub struct Alternative {
 }
 
 /// An effect that was found.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FoundEffect {
     /// Its number among the candidates.
     pub candidate: usize,
@@ -143,7 +143,13 @@ pub(super) fn found_effects(
         let is_finer = |one: &Alternative| {
             setting.candidates[one.candidate].is_finer_than(own) && one.log_odds > -policy::NAMED
         };
-        let (finer, alternatives) = near(found, place).partition(is_finer);
+        // what else would do, the most likely first
+        let rivals = found.rivals.get(place).into_iter().flatten();
+        let near = rivals.filter(|one| one.log_odds < policy::RIVAL).map(|one| {
+            let (candidate, log_odds) = (one.placed.candidate, one.log_odds);
+            Alternative { candidate, log_odds, is_exact: false }
+        });
+        let (finer, alternatives) = near.partition(is_finer);
         FoundEffect {
             candidate: taken.candidate,
             log_odds: all.posterior - without.posterior,
@@ -153,28 +159,14 @@ pub(super) fn found_effects(
             judged: judging.size(taken),
             share: share(gap(&reopened) - gap(after)),
             log_predicted: with_all - predicted(&reopened, &without),
-            stands_for: None,
-            is_named: true,
             parameters: values(setting, after, given + place, |k| errors[k]),
             alternatives,
             finer,
-            exact: Vec::new(),
-            experiment: None,
             curve: LawCurve::of(setting, after, taken),
+            ..FoundEffect::default()
         }
     };
     (0..all.parts.len()).map(of).collect()
-}
-
-/// What else would do in a place, the most likely first.
-fn near(found: &Found, place: usize) -> impl Iterator<Item = Alternative> {
-    let rivals = found.rivals.get(place).into_iter().flatten();
-    let near = rivals.filter(|one| one.log_odds < policy::RIVAL);
-    near.map(|one| Alternative {
-        candidate: one.placed.candidate,
-        log_odds: one.log_odds,
-        is_exact: false,
-    })
 }
 
 /// The parameters of an effect of a state, each with an error.

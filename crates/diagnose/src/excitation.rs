@@ -3,6 +3,7 @@
 use super::hypothesis::{Hypothesis, Part};
 use super::search::Search;
 use super::state::Setting;
+use super::weighing::{extremes_of, range};
 use crate::policy::excitation::{LARGE, LEAST_RANGE, NEVER};
 use denavit_evidence::policy;
 use denavit_measure::JointIndex;
@@ -57,13 +58,10 @@ pub(super) fn unseen(setting: &Setting<'_>, visible: &[Visible]) -> Vec<String> 
             ));
         }
         let signals = || setting.data.train.signals.iter();
-        let range = |values: &mut dyn Iterator<Item = f64>| {
-            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
-        };
-        let [low, high] = range(&mut signals().flat_map(|log| log.q[joint].iter().copied()));
+        let [low, high] = range(&[setting.data.train], JointIndex(joint));
         // What an encoder's noise does is no motion.
-        let [least, most] =
-            range(&mut signals().flat_map(|log| log.position_noise[joint].iter().copied()));
+        let noise = signals().flat_map(|log| log.position_noise[joint].iter());
+        let [least, most] = extremes_of(noise);
         if high - low <= most - least {
             says(format!("{name} does not move"));
         }

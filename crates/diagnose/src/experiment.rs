@@ -8,7 +8,7 @@
 
 use super::candidate::Candidate;
 use super::data::Data;
-use super::error::{Cause, Error};
+use super::error::{Error, ErrorKind};
 use super::floor::rms;
 use super::followed::Follower;
 use super::hypothesis::Part;
@@ -92,13 +92,14 @@ struct Seen<'s, 'a> {
 impl Ambiguity<'_> {
     /// Looks for an experiment.
     pub(super) fn separate(&self, robot: &Robot, seed: u64) -> Result<Experiment, Error> {
+        let none = |why: &str| Error::new(ErrorKind::NoExperiment, why);
         let nominal = self.nominal;
         let is_lost = |joint: &usize| {
             self.log.motor[*joint].is_some()
                 && nominal.spring_equation(JointIndex(*joint)).is_none()
         };
         if let Some(joint) = (0..nominal.model.joints.len()).find(is_lost) {
-            return Err(Cause::NoExperiment(nominal.lacks_stiffness(JointIndex(joint))).into());
+            return Err(none(&nominal.lacks_stiffness(JointIndex(joint))));
         }
         let of_harmonics = |harmonics: usize| {
             let excite = ExciteOptions {
@@ -117,19 +118,17 @@ impl Ambiguity<'_> {
             Feasible::new(robot, &excite)
         };
         let spaces = HARMONICS.into_iter().map(of_harmonics).collect::<Result<Vec<_>, _>>();
-        let mut spaces = spaces.map_err(Cause::Limits)?;
-        let rest = || "even at rest a limit of the robot is exceeded".to_owned();
+        let mut spaces = spaces.map_err(|error| Error::of(ErrorKind::NoExperiment, error))?;
         let found = self.best(&mut spaces, seed);
-        let (odds, x, space) = found.ok_or_else(|| Cause::NoExperiment(rest()))?;
+        let (odds, x, space) =
+            found.ok_or_else(|| none("even at rest a limit of the robot is exceeded"))?;
         let separation = separation_of(odds);
         let feasible = &spaces[space];
         let references = feasible.references(&x);
         let power =
             self.log_of(&references).and_then(|log| self.seen(log, |seen| seen.power(seed)));
-        let power = power.filter(|power| *power > 0.0).ok_or_else(|| {
-            let why = "the odds reach 100 to 1 in no log of the best one that was tried";
-            Cause::NoExperiment(why.to_owned())
-        })?;
+        let why = "the odds reach 100 to 1 in no log of the best one that was tried";
+        let power = power.filter(|power| *power > 0.0).ok_or_else(|| none(why))?;
         let rivals: Vec<usize> = self.names[1..].iter().map(|one| one.candidate).collect();
         let before = self.seen(self.log.clone(), |seen| seen.least(seed));
         let separation_before = separation_of(before.unwrap_or(0.0));

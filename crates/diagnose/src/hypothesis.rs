@@ -65,6 +65,16 @@ impl Hypothesis {
         self.parts.iter().map(of).collect()
     }
 
+    /// Whether all effects are linearised where they have a shape: one that is off has no slope, and
+    /// its evidence nothing of what is not known of its shape.
+    pub(super) fn is_shaped(&self) -> bool {
+        let is_flat = |column: &Spectrum| column.iter().flatten().all(|entry| *entry == 0.0);
+        self.parts.iter().all(|part| {
+            let all = part.terms.columns.iter().zip(&part.terms.is_curved);
+            all.filter(|(_, is_curved)| **is_curved).all(|(column, _)| !is_flat(column))
+        })
+    }
+
     /// The spectrum of what an effect does.
     pub(super) fn torque(&self, place: usize) -> Spectrum {
         self.parts[place].terms.torque(self.factors()[place])

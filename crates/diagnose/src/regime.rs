@@ -73,37 +73,24 @@ pub(super) fn where_left(
         if own.is_empty() {
             continue;
         }
-        let all = |stretch: &Stretch| stretch.range();
         let squares = |values: &[f64]| -> f64 {
-            own.iter().flat_map(|s| &values[all(s)]).map(|value| value * value).sum()
+            own.iter().flat_map(|s| &values[s.range()]).map(|value| value * value).sum()
         };
         let (left, torque) = (squares(residual), squares(&data.torque));
         let noise: f64 =
             own.iter().map(|s| s.rows as f64 * floors[s.log.0][equation].powi(2)).sum();
-        let mut sums: Vec<(String, f64, usize)> = Vec::new();
-        for stretch in &own {
-            let flags = regimes(data, &torques[stretch.log.0], stretch, filter_s);
-            for (place, (regime, is_in)) in flags.into_iter().enumerate() {
-                if place == sums.len() {
-                    sums.push((regime, 0.0, 0));
-                }
-                let (_, sum, count) = &mut sums[place];
-                let part = is_in.iter().zip(&residual[stretch.range()]);
-                let part = part.filter(|(is_in, _)| **is_in);
-                let square: f64 = part.clone().map(|(_, value)| value * value).sum();
-                (*sum, *count) = (*sum + square, *count + part.count());
-            }
-        }
-        let rows: usize = own.iter().map(|stretch| stretch.rows).sum();
-        let mut parts: Vec<Part> = sums
-            .into_iter()
-            .filter(|(_, _, count)| *count > 0)
-            .map(|(regime, square, count)| Part {
-                regime,
-                share: square / left.max(f64::MIN_POSITIVE),
-                time: count as f64 / rows as f64,
-            })
-            .collect();
+        let flags = own.iter().map(|s| regimes(data, &torques[s.log.0], s, filter_s));
+        let flags: Vec<Vec<(String, Vec<bool>)>> = flags.collect();
+        let rows: Vec<f64> = own.iter().flat_map(|s| &residual[s.range()]).copied().collect();
+        let part = |(place, (regime, _)): (usize, &(String, Vec<bool>))| {
+            let is_in = flags.iter().flat_map(|all| &all[place].1);
+            let within: Vec<f64> =
+                is_in.zip(&rows).filter(|(is_in, _)| **is_in).map(|(_, row)| row * row).collect();
+            let share = within.iter().sum::<f64>() / left.max(f64::MIN_POSITIVE);
+            let time = within.len() as f64 / rows.len() as f64;
+            (time > 0.0).then(|| Part { regime: regime.clone(), share, time })
+        };
+        let mut parts: Vec<Part> = flags[0].iter().enumerate().filter_map(part).collect();
         parts.sort_by(|a, b| b.excess().total_cmp(&a.excess()));
         found.push(Where {
             joint: data.nominal.equation_name(equation),

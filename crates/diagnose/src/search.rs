@@ -386,7 +386,7 @@ impl<'a> Search<'a> {
                 break;
             }
             now = self.weighed(parts, Some(&now), rounds);
-            if now.posterior > best.posterior {
+            if now.posterior > best.posterior || !best.is_shaped() && now.is_shaped() {
                 best = now.clone();
             } else if round > 1 {
                 // too far, for a law that bends on the way

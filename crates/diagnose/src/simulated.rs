@@ -3,7 +3,8 @@
 //! measured torques, before and after. Drives whose motors were measured before their springs begin
 //! with angle and rate of these, and are moved by the motors' torques.
 
-use super::error::Cause;
+use super::error::Error;
+use super::error::ErrorKind::NotMoved;
 use super::nominal::Nominal;
 use super::state::{Setting, State, Taken};
 use denavit_codegen::effect::{Effect, read_estimated_model, read_model};
@@ -31,13 +32,7 @@ pub struct MotionGap {
 }
 
 /// The gaps of the models before and after.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MotionGaps {
-    /// Of the logs that were searched: before, after.
-    pub train: [MotionGap; 2],
-    /// Of those that judge.
-    pub held_out: [MotionGap; 2],
-}
+pub type MotionGaps = Split<[MotionGap; 2]>;
 
 /// A model as a file, with the logs that it is moved along.
 pub struct Moved<'a> {
@@ -57,7 +52,7 @@ const MOST_WINDOWS: usize = 40;
 impl Moved<'_> {
     /// The robot with effects at their values, and with the nominal model's numbers moved by z;
     /// whether they are.
-    fn robot(&self, setting: &Setting<'_>, state: &State) -> Result<(Robot, bool), Cause> {
+    fn robot(&self, setting: &Setting<'_>, state: &State) -> Result<(Robot, bool), Error> {
         let (nominal, candidates) = (setting.data.train.nominal, setting.candidates);
         let State { taken, z, .. } = state;
         let values = |one: &Taken| -> EffectValues<'_> {
@@ -73,8 +68,8 @@ impl Moved<'_> {
             NewEffect { effect, at, parameters: values(one) }
         });
         let new: Vec<NewEffect<'_>> = new.collect();
-        let no_place =
-            || Cause::NotMoved(format!("{}: no place for what was estimated", nominal.model.model));
+        let no_place = format!("{}: no place for what was estimated", nominal.model.model);
+        let no_place = || Error::new(NotMoved, no_place.as_str());
         let with = with_effects(self.source, &new, &changed).ok_or_else(no_place)?;
         let moved = moved_numbers(nominal, z, &with).ok_or_else(no_place)?;
         let name = "the model";
@@ -85,7 +80,7 @@ impl Moved<'_> {
         }
         // Numbers that make no body together, or no spring, stay as they were.
         let as_it_was = read_model(name, with.as_bytes(), self.effects);
-        as_it_was.map(|robot| (robot, false)).map_err(|error| Cause::Unsound(Box::new(error)))
+        as_it_was.map(|robot| (robot, false)).map_err(|error| Error::of(NotMoved, error))
     }
 
     /// The gap of a set of logs, with a filter of a cutoff \[Hz\].
@@ -95,17 +90,16 @@ impl Moved<'_> {
         cutoff_hz: f64,
         setting: &Setting<'_>,
         state: &State,
-    ) -> Result<MotionGap, Cause> {
+    ) -> Result<MotionGap, Error> {
         let (mut robot, is_estimated) = self.robot(setting, state)?;
         let nominal = setting.data.train.nominal;
         let model = nominal.model;
         let zeros = drive_by_motors(&mut robot, nominal, &state.z, logs)?;
-        let laws =
-            apart(&robot, self.effects).map_err(|error| Cause::NotMoved(error.to_string()))?;
-        let mut plant = plant_of(&robot, &[]).map_err(Cause::Plant)?;
+        let laws = apart(&robot, self.effects).map_err(|error| Error::of(NotMoved, error))?;
+        let mut plant = plant_of(&robot, &[]).map_err(|error| Error::of(NotMoved, error))?;
         if let (Some(joint), true) = (lacks_rotor(plant.model(), logs), zeros.is_some()) {
             let why = format!("the model has no rotor before the spring of `{joint}`");
-            return Err(Cause::NotMoved(why));
+            return Err(Error::new(NotMoved, why));
         }
         let names: Vec<String> = model.joints.iter().map(|joint| joint.name.clone()).collect();
         let mut joined: Option<Forward> = None;
@@ -119,11 +113,11 @@ impl Moved<'_> {
                 Some(zeros) => MotionLog::with_drives(&log, &names, filter, zeros),
                 None => MotionLog::new(&log, &names, filter),
             };
-            let file = log.file.clone();
-            let mut motion = motion.map_err(|error| Cause::Motion(file.clone(), error))?;
+            let mut motion =
+                motion.map_err(|error| Error::of(NotMoved, error).in_log(&log.file))?;
             undo_logged_torques(&mut motion, model, &laws.laws);
             let one = in_windows(plant.as_mut(), &motion, windows)
-                .map_err(|error| Cause::Forward(file, error))?;
+                .map_err(|error| Error::of(NotMoved, error).in_log(&log.file))?;
             match &mut joined {
                 Some(joined) => joined.append(one),
                 None => joined = Some(one),
@@ -166,7 +160,7 @@ fn drive_by_motors(
     nominal: &Nominal<'_>,
     z: &[f64],
     logs: &[MeasuredLog],
-) -> Result<Option<Vec<f64>>, Cause> {
+) -> Result<Option<Vec<f64>>, Error> {
     let links: Vec<LinkId> = robot.joints().map(|(link, _)| link).collect();
     let is_measured = |joint: usize| logs.iter().any(|log| log.joints[joint].motor.is_some());
     if !(0..links.len()).any(is_measured) {
@@ -182,7 +176,7 @@ fn drive_by_motors(
         match drive.filter(|drive| drive.series_elastic.is_some()) {
             Some(drive) if !is_measured(joint) => drive.rotor_inertia = None,
             Some(_) if !has_spring => {
-                return Err(Cause::NotMoved(nominal.lacks_stiffness(JointIndex(joint))));
+                return Err(Error::new(NotMoved, nominal.lacks_stiffness(JointIndex(joint))));
             }
             _ => {}
         }

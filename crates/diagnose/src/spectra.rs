@@ -127,8 +127,7 @@ impl Spectra {
     /// The orthonormal cosine transform of what a stretch has up to a frequency \[Hz\], its rows by
     /// what they count.
     fn transformed(&self, rows: &[f64], set: usize, stretch: usize, up_to_hz: f64) -> Vec<f64> {
-        let plan = self.plans.iter().find(|(length, _)| *length == rows.len());
-        let plan = &plan.expect("every stretch has a plan").1;
+        let plan = self.plan(rows.len());
         let mut lines = rows.to_vec();
         if up_to_hz.is_finite() {
             plan.process_dct2(&mut lines);
@@ -145,6 +144,30 @@ impl Spectra {
         lines.iter_mut().for_each(|line| *line *= scale);
         lines[0] *= 0.5_f64.sqrt();
         lines
+    }
+
+    /// For each set what factors of lines are in its rows: the transposed transform.
+    pub(super) fn to_rows(&self, sets: &[&Data<'_>], factors: &Spectrum) -> Vec<Vec<f64>> {
+        let mut all: Vec<Vec<f64>> = sets.iter().map(|data| vec![0.0; data.rows()]).collect();
+        for (line, factor) in self.lines.iter().flatten().zip(factors.iter().flatten()) {
+            let first = sets[line.set].stretches[line.stretch].first;
+            all[line.set][first + line.number] = *factor;
+        }
+        for ((data, all), weights) in sets.iter().zip(&mut all).zip(&self.weights) {
+            for (stretch, weights) in data.stretches.iter().zip(weights) {
+                let rows = &mut all[stretch.range()];
+                rows[0] *= 2.0_f64.sqrt();
+                self.plan(stretch.rows).process_dct3(rows);
+                let scale = (2.0 / stretch.rows as f64).sqrt();
+                rows.iter_mut().zip(weights).for_each(|(row, weight)| *row *= scale * weight);
+            }
+        }
+        all
+    }
+
+    fn plan(&self, rows: usize) -> &dyn TransformType2And3<f64> {
+        let plan = self.plans.iter().find(|(length, _)| *length == rows);
+        &*plan.expect("every stretch has a plan").1
     }
 
     /// The spectrum of what rows of all sets have up to a frequency \[Hz\].

@@ -9,8 +9,12 @@ use super::law::Motion;
 use super::search::Search;
 use super::weighing::{Placed, Weighing};
 pub(super) use crate::policy::state::MOST_Z;
-use denavit_evidence::{Terms, policy};
+use denavit_evidence::{Spectrum, Terms, policy};
 use denavit_measure::Split;
+use denavit_numerics::variance_of_sum;
+
+/// Periods of the cutoff of torques in a part of time.
+const PART_PERIODS: f64 = 2.0;
 
 /// An effect that was taken into the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,7 +107,47 @@ impl<'a> Setting<'a> {
             train: left(self.data.train, &torques.train),
             held_out: left(self.data.held_out, &torques.held_out),
         };
+        let moved = self.deviations_by_time(weighing, fitted, &residual.train);
+        let all = deviations[self.given.len()..].iter_mut().zip(moved).enumerate();
+        for (_, (own, moved)) in all.filter(|(place, _)| trained.contains(place)) {
+            own.iter_mut().zip(moved).for_each(|(own, moved)| *own = own.max(moved));
+        }
         State { taken, deviations, untrained, z, residual, torques }
+    }
+
+    /// The deviations of what was found by what is left at each time: where a law is not quite what
+    /// it is named, most is left where it acts, and moves its values (White 1980).
+    fn deviations_by_time(
+        &self,
+        weighing: &Weighing<'_>,
+        fitted: &Hypothesis,
+        residual: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let Data { signals, stretches, .. } = self.data.train;
+        let terms: Vec<&Terms> = fitted.parts.iter().map(|part| &part.terms).collect();
+        let deviation = |influence: &Spectrum| {
+            let influence = weighing.spectra.to_rows(&weighing.sets, influence).swap_remove(0);
+            let mut moved: Vec<Vec<f64>> = vec![Vec::new(); signals.len()];
+            for stretch in stretches {
+                let moved = &mut moved[stretch.log.0];
+                moved.resize(stretch.rows, 0.0);
+                let rows = stretch.range().map(|row| influence[row] * residual[row]);
+                moved.iter_mut().zip(rows).for_each(|(sum, by)| *sum += by);
+            }
+            let all = signals.iter().zip(&moved);
+            let squares = all.map(|(log, moved)| {
+                let together = PART_PERIODS / log.torque_hz / log.row_step_s();
+                variance_of_sum(moved, (together as usize).max(1))
+            });
+            squares.sum::<f64>().sqrt()
+        };
+        let influences = weighing.base.influences(&terms, &fitted.weighed.variances);
+        let of_factors: Vec<f64> = influences.iter().map(deviation).collect();
+        let by_parts = fitted.parts.iter().zip(fitted.by_parts(&of_factors));
+        let of = |(part, own): (&Part, &[f64])| {
+            part.placed.deviations.iter().zip(own).map(|(one, factor)| one * factor).collect()
+        };
+        by_parts.map(of).collect()
     }
 
     /// Held-out logs alone, in which effects are weighed.

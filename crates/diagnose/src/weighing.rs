@@ -473,9 +473,13 @@ fn largest(sets: &[&Data<'_>], joint: JointIndex) -> Option<f64> {
 
 /// The least and the largest position of a joint.
 pub(super) fn range(sets: &[&Data<'_>], joint: JointIndex) -> [f64; 2] {
-    let all =
-        sets.iter().flat_map(|data| &data.signals).flat_map(|signals| signals.q[joint.0].iter());
-    all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &q| [low.min(q), high.max(q)])
+    let signals = sets.iter().flat_map(|data| &data.signals);
+    extremes_of(signals.flat_map(|signals| signals.q[joint.0].iter()))
+}
+
+/// The least and the largest of values.
+pub(super) fn extremes_of<'v>(values: impl Iterator<Item = &'v f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &v| [low.min(v), high.max(v)])
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@
 
 use crate::base::{Base, fill};
 use crate::filtered::Filtered;
+use crate::layout::Spectrum;
 use crate::orthant::bounded;
 use crate::policy;
 use crate::terms::Terms;
@@ -86,6 +87,28 @@ impl Base {
         let mut weighed = posterior.told(terms, self.parameters, evidence, variances);
         weighed.own = self.own_factors(&weighed.own);
         weighed
+    }
+
+    /// How much each row of the data moves the factors of terms, curved ones as well, with the
+    /// variance of each cell: a spectrum for each of them.
+    pub fn influences(&self, terms: &[&Terms], variances: &[f64]) -> Vec<Spectrum> {
+        let (own, width) = (self.parameters, terms.iter().map(|one| one.len()).sum::<usize>());
+        let posterior = Posterior::new(&self.cells_with(terms, width), variances, &[]);
+        let shares = posterior.covariance.columns(own, width);
+        let of_channel = |channel: usize| {
+            let mut all = &self.own[channel] * shares.rows(0, own);
+            if let Some(columns) = self.touched(terms, channel, width) {
+                all += columns.columns(1, width) * shares.rows(own, width);
+            }
+            let cells = self.layout.cells().zip(variances).filter(|((of, _), _)| *of == channel);
+            for ((_, rows), variance) in cells {
+                all.rows_mut(rows.start, rows.len()).unscale_mut(*variance);
+            }
+            all
+        };
+        let channels: Vec<DMatrix<f64>> = (0..self.layout.channels()).map(of_channel).collect();
+        let of = |k: usize| channels.iter().map(|all| all.column(k).as_slice().to_vec()).collect();
+        (0..width).map(of).collect()
     }
 
     /// The log of by how much terms shrink data, with these factors of all columns.

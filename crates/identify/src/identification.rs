@@ -13,7 +13,7 @@ use super::odd_log::odd_log;
 use crate::policy::identification::{FAR, NOISY, OTHER, SHORT, SMEARED};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex};
-use denavit_plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
+use denavit_plants::regression::{RegressionJoint, RegressionModel};
 
 /// What is to be identified, from what.
 #[derive(Clone, Copy, Debug)]
@@ -168,8 +168,6 @@ impl Estimated {
         let given = model.model_axes();
         let phi = found.solution.phi.as_slice();
         let judged = |phi: &[f64]| (!held_out.is_empty()).then(|| validate(model, phi, held_out));
-        let of_model = |one: &StandardParameter| one.value.unwrap_or(0.0);
-        let standard: Vec<f64> = model.standard.iter().map(of_model).collect();
         let held_out_left = judged(phi);
         let torques = torques(model, &left);
         let counted = shares(model, &found, &left);
@@ -216,7 +214,7 @@ impl Estimated {
                 validate(model, &phi, logs).relative
             }),
             convergence: convergence(model, &found),
-            consistent: consistent(model, &found, &standard),
+            consistent: consistent(model, &found),
             estimate: found,
         }
     }

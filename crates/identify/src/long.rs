@@ -5,7 +5,7 @@ use super::estimate::long::LongRows;
 use super::estimate::{Unexplained, Validation, consistent, convergence, parameters, validate};
 use super::identification::{Identification, Request, left_out_rows, shares};
 use crate::policy::unexplained::{LEFT, LEFT_ALIKE};
-use denavit_plants::regression::{RegressionModel, StandardParameter};
+use denavit_plants::regression::RegressionModel;
 
 impl Identification {
     /// That of a long log of whose head this is one, with the rows of the whole. Parameters,
@@ -19,8 +19,6 @@ impl Identification {
         let longer = rows.samples() as f64 / head.samples.max(1) as f64;
         let found = self.estimate.of_long(model, rows, options)?;
         let phi = found.solution.phi.as_slice();
-        let of_model = |one: &StandardParameter| one.value.unwrap_or(0.0);
-        let standard: Vec<f64> = model.standard.iter().map(of_model).collect();
         let train = rows.left(model, phi, &head);
         let left_out = left_out_rows(model, rows.left_out(), &shares(model, &found, &train));
         let before = model.model_axes().map(|phi| match held_out.is_empty() {
@@ -34,7 +32,7 @@ impl Identification {
             validate: (!held_out.is_empty()).then(|| validate(model, phi, held_out)),
             parameters: parameters(model, &found),
             convergence: convergence(model, &found),
-            consistent: consistent(model, &found, &standard),
+            consistent: consistent(model, &found),
             periods: periods * longer,
             train,
             before,

@@ -6,7 +6,7 @@
 //! - [`Equations`]: linear equations with errors, and which unknowns or sums of them follow
 //! - [`least_squares`]: rows condensed to triangles as they come, and what follows from them
 //! - [`interval_factor`], [`least_by_chance`]: what chance makes of errors and variances
-//! - [`long_run`], [`time_alike`]: variances and samples where neighbours are alike
+//! - [`long_run`], [`variance_of_sum`], [`time_alike`]: variances and samples where neighbours are alike
 //! - [`rms`], [`mean`], [`variance`], [`median`], [`products`]: numbers of a signal, or of two
 //! - [`derivative`]: central differences; [`between`], [`cubic`]: a signal between its samples
 //! - [`extremes`]: the rows of long columns that a picture needs
@@ -38,4 +38,5 @@ pub use random::Random;
 pub use text::{percent, short};
 pub use variances::{
     interval_factor, least_by_chance, long_run, mean, median, products, rms, time_alike, variance,
+    variance_of_sum,
 };

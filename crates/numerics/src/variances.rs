@@ -62,6 +62,19 @@ pub fn interval_factor(degrees_of_freedom: f64) -> f64 {
     z + first + second + third + fourth
 }
 
+/// The variance of a sum of terms, so many of which in a row are alike: what sums of these vary by,
+/// wherever they begin (Newey, West 1987).
+pub fn variance_of_sum(terms: &[f64], together: usize) -> f64 {
+    let mut sums = vec![0.0];
+    sums.extend(terms.iter().scan(0.0, |sum, term| {
+        *sum += term;
+        Some(*sum)
+    }));
+    let part = |end: usize| sums[end.min(terms.len())] - sums[end.saturating_sub(together)];
+    let parts = (1..terms.len() + together).map(|end| part(end).powi(2));
+    parts.sum::<f64>() / together as f64
+}
+
 /// Neighbouring parts are taken to be no more alike than this.
 const MOST_ALIKE: f64 = 0.8;
 

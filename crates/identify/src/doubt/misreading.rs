@@ -176,21 +176,15 @@ impl Misreading {
             Self::TorquesOfMotors(true) => "be those of the motors, before their gears",
             Self::TorquesOfMotors(false) => "be those of the joints, not of the motors",
             Self::Exchanged(..) => "be exchanged",
-            Self::Zero(joint, offset) => {
-                let size = match joints[joint.0].slides {
-                    true => format!("{:.4} m", offset.abs()),
-                    false => {
-                        let degrees = offset.abs().to_degrees();
-                        format!("{:.4} rad ({degrees:.1} degrees)", offset.abs())
-                    }
+            Self::Zero(joint, offset) | Self::TorqueOffset(joint, offset) => {
+                let (size, is_zero) = (offset.abs(), matches!(self, Self::Zero(..)));
+                let unit = match (is_zero, joints[joint.0].slides) {
+                    (true, false) => format!("rad ({:.1} degrees)", size.to_degrees()),
+                    (true, true) => "m".to_owned(),
+                    (false, false) => "N m".to_owned(),
+                    (false, true) => "N".to_owned(),
                 };
                 let side = if offset < 0.0 { "above" } else { "below" };
-                return format!("be {size} {side} its true value, all the time");
-            }
-            Self::TorqueOffset(joint, offset) => {
-                let unit = if joints[joint.0].slides { "N" } else { "N m" };
-                let side = if offset < 0.0 { "above" } else { "below" };
-                let size = offset.abs();
                 return format!("be {size:.4} {unit} {side} its true value, all the time");
             }
             Self::TorqueGain(_, factor) => {

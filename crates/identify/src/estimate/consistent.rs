@@ -7,7 +7,7 @@
 use super::least_squares::Estimate;
 use crate::policy::consistent::{BOUND_WEIGHTS, FAR, STAY};
 use denavit_plants::coordinates::{Bounds, Coordinates};
-use denavit_plants::regression::RegressionModel;
+use denavit_plants::regression::{RegressionModel, StandardParameter};
 use nalgebra::{DMatrix, DVector};
 
 /// Steps of the search.
@@ -30,8 +30,8 @@ pub struct Consistent {
     pub own: Vec<(usize, f64)>,
 }
 
-/// The nearest parameters of bodies that exist; `start` is theta0 of the model before.
-pub fn consistent(model: &RegressionModel, found: &Estimate, start: &[f64]) -> Consistent {
+/// The nearest parameters of bodies that exist, from those of the model before.
+pub fn consistent(model: &RegressionModel, found: &Estimate) -> Consistent {
     let triangles = found.condensed.whole();
     let rank = found.condensed.rank;
     let r = found.condensed.system(&triangles, &found.weights, &[]);
@@ -41,7 +41,8 @@ pub fn consistent(model: &RegressionModel, found: &Estimate, start: &[f64]) -> C
     // Weights are 1 over noise, or 1 where there is none: what counts is the residual's own size.
     let scale = noise_scale(&r, &target, rank);
     let coordinates = Coordinates::new(model);
-    let first = coordinates.of_start(start);
+    let of_model = |one: &StandardParameter| one.value.unwrap_or(0.0);
+    let first = coordinates.of_start(&model.standard.iter().map(of_model).collect::<Vec<f64>>());
     let mut problem = Problem {
         jacobian: (&w * b) / scale,
         target: target / scale,

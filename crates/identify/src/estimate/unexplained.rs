@@ -207,14 +207,11 @@ fn at_rest(
 
 /// The longest spell of samples.
 fn longest(samples: &[bool]) -> std::ops::Range<usize> {
-    let mut longest = 0..0;
-    let mut from = 0;
-    for (at, is_in) in samples.iter().enumerate() {
-        if !is_in {
-            from = at + 1;
-        } else if at + 1 - from > longest.len() {
-            longest = from..at + 1;
-        }
-    }
-    longest
+    let mut end = 0;
+    let spells = samples.chunk_by(|one, next| one == next).map(|spell| {
+        end += spell.len();
+        (spell[0], end - spell.len()..end)
+    });
+    let spells = spells.filter(|(is_in, _)| *is_in).map(|(_, spell)| spell);
+    spells.reduce(|one, next| if next.len() > one.len() { next } else { one }).unwrap_or(0..0)
 }

@@ -290,8 +290,7 @@ fn bodies_that_exist_are_near_and_exist() {
     let model = RegressionModel::new(&robot, friction, &[]).expect("a model");
     let data = Experiment { samples: 800, noise: 0.3, seed: 21, friction: true }.run(&robot);
     let found = run(&model, std::slice::from_ref(&data), &Options::default());
-    let start: Vec<f64> = model.standard.iter().map(|one| one.value.unwrap_or(0.1)).collect();
-    let near = consistent(&model, &found, &start);
+    let near = consistent(&model, &found);
     for (place, one) in model.standard.iter().enumerate() {
         match &one.owner {
             Some((_, "m")) => {

@@ -129,8 +129,7 @@ fn no_moment_that_is_a_sum_is_negative() {
         ..Conditioned::default()
     };
     let found = estimate(&model, &[data], &[], &Options::default(), &vec![0.0; model.rank()]);
-    let start: Vec<f64> = model.standard.iter().map(|one| one.value.unwrap_or(0.1)).collect();
-    let near = consistent(&model, &found.expect("the motion excites"), &start);
+    let near = consistent(&model, &found.expect("the motion excites"));
     let mut values: Vec<f64> = model.parameters.iter().map(|one| one.value).collect();
     near.own.iter().for_each(|&(place, value)| values[place] = value);
     let least = model.masses_and_moments(&values).into_iter().fold(f64::INFINITY, f64::min);

@@ -81,8 +81,7 @@ pub fn identify_two_stage(
     let stages = two_stage(plant, &model, &log, &how)
         .map_err(|error| Cause::Identify(log.file.clone(), error))?;
     let parameters = parameters(&model, &stages.load);
-    let standard: Vec<f64> = model.standard.iter().map(|one| one.value.unwrap_or(0.0)).collect();
-    let bodies = consistent(&model, &stages.load, &standard);
+    let bodies = consistent(&model, &stages.load);
     let mut remarks = named(&log);
     let own = conditioned(plant, &log, &stages.springs, &of_load)?;
     let mut held_out = Vec::new();

@@ -8,6 +8,7 @@ use crate::policy::columns::AT_REST;
 use denavit_evidence::policy::{LEFT_OF_EXPLAINED, NOTHING_LIKE};
 use denavit_identify::doubt::{MisreadColumns, misread_columns};
 use denavit_measure::condition::Conditioned;
+use denavit_numerics::least_and_most;
 
 /// The columns that are surely misread; none where the residual is small at every joint.
 pub(super) fn misread(data: &Data<'_>, residual: &[f64]) -> Vec<MisreadColumns> {
@@ -39,7 +40,7 @@ fn conditioned(signals: &Signals) -> Conditioned {
         |all: &[Shared]| -> Vec<Vec<f64>> { all.iter().map(|one| signals.rows_of(one)).collect() };
     let q = rows(&signals.q);
     let rests = |q: &Vec<f64>| {
-        let [low, high] = [f64::min, f64::max].map(|of| q.iter().copied().fold(q[0], of));
+        let [low, high] = least_and_most(q);
         high - low < AT_REST
     };
     Conditioned {

@@ -132,9 +132,7 @@ pub(super) fn found_effects(
         |state: &State, by_all: &Hypothesis| setting.predicted(judging, state, by_all).1.posterior;
     let with_all = predicted(after, by_all);
     let of = |place: usize| {
-        let mut parts = all.parts.clone();
-        parts.remove(place);
-        let without = search.settled(parts, Some(all));
+        let without = search.settled(all.without(place), Some(all));
         let taken = &after.taken[given + place];
         let reopened = setting.state(&without, &before.z);
         let errors = setting.errors(after, by_all, place);

@@ -35,8 +35,7 @@ impl Search<'_> {
                 continue;
             };
             let joint = self.candidate(&now, place).joint;
-            let mut others = now.parts.clone();
-            let own = others.remove(place);
+            let (own, others) = (now.parts[place].clone(), now.without(place));
             let rest = self.weighed(others.clone(), Some(&now), policy::ROUNDS[0]);
             // what others took over is not needed any more
             let is_idle = now.posterior - rest.posterior < policy::NAMED
@@ -88,9 +87,7 @@ impl Search<'_> {
         }
         let parts = [&one.parts[..], std::slice::from_ref(own)].concat();
         let both = self.weighed(parts, Some(one), policy::ROUNDS[0]);
-        let mut others = both.parts.clone();
-        others.remove(place);
-        let without = self.weighed(others, Some(&both), policy::ROUNDS[0]);
+        let without = self.weighed(both.without(place), Some(&both), policy::ROUNDS[0]);
         both.posterior - one.posterior > policy::NAMED
             && self.is_worth(one, &both, last)
             && self.is_worth(&without, &both, place)

@@ -3,10 +3,11 @@
 use super::hypothesis::{Hypothesis, Part};
 use super::search::Search;
 use super::state::Setting;
-use super::weighing::{extremes_of, range};
+use super::weighing::range;
 use crate::policy::excitation::{LARGE, LEAST_RANGE, NEVER};
 use denavit_evidence::policy;
 use denavit_measure::JointIndex;
+use denavit_numerics::least_and_most;
 
 /// An effect of one parameter, and how large it must be to be seen in a joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +62,7 @@ pub(super) fn unseen(setting: &Setting<'_>, visible: &[Visible]) -> Vec<String> 
         let [low, high] = range(&[setting.data.train], JointIndex(joint));
         // What an encoder's noise does is no motion.
         let noise = signals().flat_map(|log| log.position_noise[joint].iter());
-        let [least, most] = extremes_of(noise);
+        let [least, most] = least_and_most(noise);
         if high - low <= most - least {
             says(format!("{name} does not move"));
         }

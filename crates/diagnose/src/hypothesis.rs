@@ -17,12 +17,10 @@ impl Part {
     pub(super) fn steps_to(&self, values: &[f64]) -> Vec<f64> {
         let Placed { values: now, deviations, .. } = &self.placed;
         let all = values.iter().zip(now).zip(deviations).zip(&self.terms.is_curved);
-        all.map(
-            |(((value, now), deviation), is_curved)| {
-                if *is_curved && *deviation > 0.0 { (value - now) / deviation } else { 0.0 }
-            },
-        )
-        .collect()
+        let step = |(((value, now), deviation), is_curved): (((&f64, &f64), &f64), &bool)| {
+            if *is_curved && *deviation > 0.0 { (value - now) / deviation } else { 0.0 }
+        };
+        all.map(step).collect()
     }
 }
 
@@ -38,6 +36,11 @@ pub(super) struct Hypothesis {
 }
 
 impl Hypothesis {
+    /// Its effects but the one in a place.
+    pub(super) fn without(&self, place: usize) -> Vec<Part> {
+        [&self.parts[..place], &self.parts[place + 1..]].concat()
+    }
+
     /// The numbers of the effects' candidates.
     pub(super) fn candidates(&self) -> Vec<usize> {
         self.parts.iter().map(|part| part.placed.candidate).collect()

@@ -52,11 +52,8 @@ fn late(signals: &Signals, joint: JointIndex, heights: &[f64]) -> Vec<f64> {
 /// For each joint what its friction lacks where all its reversals are late by the same time.
 pub(super) fn late_reversals(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
     let heights = heights(nominal, signals, phi);
-    heights
-        .iter()
-        .enumerate()
-        .map(|(joint, heights)| late(signals, JointIndex(joint), heights))
-        .collect()
+    let of = |(joint, heights): (usize, &Vec<f64>)| late(signals, JointIndex(joint), heights);
+    heights.iter().enumerate().map(of).collect()
 }
 
 /// What friction of some height may differ by in the rows, since the drive rests: up to where it

@@ -2,6 +2,7 @@
 //! at, never to decide.
 
 use super::state::{Setting, State, Taken};
+use denavit_numerics::variance;
 
 /// What a law is drawn over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,8 +116,8 @@ fn explained_by(values: &[f64], law: &[f64]) -> f64 {
     let left: f64 = order
         .chunks(values.len().div_ceil(GROUPS).max(1))
         .map(|group| {
-            let mean = group.iter().map(|&row| law[row]).sum::<f64>() / group.len() as f64;
-            group.iter().map(|&row| (law[row] - mean).powi(2)).sum::<f64>()
+            let group: Vec<f64> = group.iter().map(|&row| law[row]).collect();
+            variance(&group) * group.len() as f64
         })
         .sum();
     if squares > 0.0 { 1.0 - left / squares } else { 0.0 }

@@ -227,10 +227,8 @@ impl<'a> Nominal<'a> {
 
 /// The deviation of a number; none where it is certain: stated as 0, or 0 without a statement.
 fn deviation(model: &RegressionModel, parameter: &ModelParameter) -> Option<f64> {
-    let is_of_joint = model
-        .standard
-        .iter()
-        .any(|standard| standard.name == parameter.name && standard.is_of_joint());
+    let mut own = model.standard.iter().filter(|standard| standard.name == parameter.name);
+    let is_of_joint = own.any(StandardParameter::is_of_joint);
     let share = if is_of_joint { JOINT } else { BODY };
     let std = parameter.std.unwrap_or(share * parameter.value.abs());
     Some(std).filter(|std| *std > 0.0)

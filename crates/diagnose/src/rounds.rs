@@ -110,10 +110,9 @@ impl Search<'_> {
     /// exchanged, and none is added: what did not repeat is like many an effect.
     pub(super) fn drop(&mut self, found: &mut Found, place: usize) {
         self.may_move = false; // no search begins again after this one
-        let mut parts = found.after.parts.clone();
-        let dropped = parts.remove(place).placed.candidate;
+        let dropped = found.after.parts[place].placed.candidate;
         self.screen[dropped].clear();
-        let rest = self.settled(parts, Some(&found.after));
+        let rest = self.settled(found.after.without(place), Some(&found.after));
         let (after, rivals) = self.exchanged(rest, &|_| true, &mut BTreeSet::new());
         found.dropped.push(dropped);
         (found.after, found.rivals) = (after, rivals);

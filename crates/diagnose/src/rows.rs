@@ -142,12 +142,8 @@ pub(super) fn of_axes(
     with_known: bool,
 ) -> PerJoint {
     let joints = nominal.model.joints.len();
-    let of_joint: Vec<Vec<f64>> = nominal
-        .model
-        .pattern()
-        .iter()
-        .map(|places| places.iter().map(|&place| phi[place]).collect())
-        .collect();
+    let of_joint = (0..joints).map(|joint| nominal.model.of_joint(joint, phi));
+    let of_joint: Vec<Vec<f64>> = of_joint.collect();
     let mut torques = vec![Vec::with_capacity(signals.samples()); joints];
     let mut part = Vec::new();
     for_each_block(&mut nominal.model.evaluator(), signals, |rows| {
@@ -171,11 +167,8 @@ fn for_each_block(
     let mut rows = RegressionRows::default();
     for first in (0..signals.samples()).step_by(BLOCK) {
         let range = first..(first + BLOCK).min(signals.samples());
-        let motion: Vec<&[f64]> = [&signals.q, &signals.qd, &signals.qdd]
-            .into_iter()
-            .flatten()
-            .map(|column| &column[range.clone()])
-            .collect();
+        let motion = [&signals.q, &signals.qd, &signals.qdd].into_iter().flatten();
+        let motion: Vec<&[f64]> = motion.map(|column| &column[range.clone()]).collect();
         evaluator.evaluate(&motion, &mut rows).expect("signals have a column for each joint");
         visit(&rows);
     }

@@ -241,9 +241,8 @@ impl<'a> Search<'a> {
                 continue;
             }
             let prior = log_occurrence(&self.weighing.candidates[candidate]);
-            let gains = own
-                .iter()
-                .map(|part| (glance.see(&part.terms).gain + prior + part.placed.log_share, part));
+            let gain = |part: &Part| glance.see(&part.terms).gain + prior + part.placed.log_share;
+            let gains = own.iter().map(|part| (gain(part), part));
             seen.extend(gains.max_by(|a, b| a.0.total_cmp(&b.0)));
         }
         seen.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -288,16 +288,13 @@ impl Signals {
         let at = |signal: &Vec<f64>| samples.iter().map(|&k| signal[k]).collect::<Vec<f64>>();
         let shared = |signal: &Shared| Rc::new(at(signal));
         let all = |signals: &[Shared]| signals.iter().map(shared).collect();
+        let of_motor = |m: &Option<[Shared; 3]>| m.as_ref().map(|m| m.each_ref().map(shared));
         Self {
             t: at(&self.t),
             q: all(&self.q),
             qd: all(&self.qd),
             qdd: all(&self.qdd),
-            motor: self
-                .motor
-                .iter()
-                .map(|m| m.as_ref().map(|m| m.each_ref().map(shared)))
-                .collect(),
+            motor: self.motor.iter().map(of_motor).collect(),
             ..self.clone()
         }
     }

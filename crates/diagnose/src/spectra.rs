@@ -195,11 +195,8 @@ impl Spectra {
             Some(responses[set].torque[place(set, stretch)?].as_slice())
         };
         let torque = self.of(&torque, up_to_hz);
-        let parameters = responses
-            .iter()
-            .filter_map(|response| response.gradient.first().map(Vec::len))
-            .max()
-            .unwrap_or(0);
+        let counts = responses.iter().filter_map(|one| one.gradient.first().map(Vec::len));
+        let parameters = counts.max().unwrap_or(0);
         let of_parameter = |parameter: usize| {
             let own = |set: usize, stretch: usize| {
                 Some(responses[set].gradient[place(set, stretch)?][parameter].as_slice())

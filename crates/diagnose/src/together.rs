@@ -57,9 +57,7 @@ impl Search<'_> {
         places.sort_by(|a, b| seen(*a).total_cmp(&seen(*b)));
         let are_too_many = all.parts.len() > most;
         places.into_iter().find_map(|place| {
-            let mut others = all.parts.clone();
-            others.remove(place);
-            let without = self.weighed(others, Some(all), policy::ROUNDS[0]);
+            let without = self.weighed(all.without(place), Some(all), policy::ROUNDS[0]);
             let is_asked = all.posterior - without.posterior > policy::NAMED
                 && self.is_worth(&without, all, place);
             (are_too_many || !is_asked).then_some(without)

@@ -11,6 +11,7 @@ use super::spectra::Spectra;
 use super::state::{Effects, Taken};
 use denavit_evidence::{Base, Filtered, Glance, Spectrum, Terms, Unpredicted, policy};
 use denavit_measure::JointIndex;
+use denavit_numerics::least_and_most;
 use denavit_plants::effect::EffectLaw;
 
 /// An effect near values of its parameters, with what is believed of them.
@@ -397,19 +398,14 @@ impl<'a> Weighing<'a> {
 
     /// What an effect does at the joint where that is most, as a share of its torque.
     pub(super) fn size(&self, taken: &Taken) -> f64 {
-        let channels = self.spectra.torque.len();
-        let (mut squares, mut rows) = (vec![0.0; channels], vec![0.0; channels]);
+        let mut squares = vec![0.0; self.spectra.torque.len()];
         for response in self.responses(taken) {
             for (stretch, torque) in response.stretches.iter().zip(&response.torque) {
                 squares[stretch.equation] += torque.iter().map(|row| row * row).sum::<f64>();
-                rows[stretch.equation] += stretch.rows as f64;
             }
         }
-        let share = |channel: usize| {
-            let mean: f64 = squares[channel] / f64::max(rows[channel], 1.0);
-            mean.sqrt() / self.spectra.torque[channel].max(f64::MIN_POSITIVE)
-        };
-        (0..channels).map(share).fold(0.0, f64::max)
+        let all = squares.into_iter().enumerate();
+        all.map(|(at, squares)| self.spectra.share_of_squares(at, squares)).fold(0.0, f64::max)
     }
 
     /// The values of the effects that the model has, with own factors.
@@ -474,12 +470,7 @@ fn largest(sets: &[&Data<'_>], joint: JointIndex) -> Option<f64> {
 /// The least and the largest position of a joint.
 pub(super) fn range(sets: &[&Data<'_>], joint: JointIndex) -> [f64; 2] {
     let signals = sets.iter().flat_map(|data| &data.signals);
-    extremes_of(signals.flat_map(|signals| signals.q[joint.0].iter()))
-}
-
-/// The least and the largest of values.
-pub(super) fn extremes_of<'v>(values: impl Iterator<Item = &'v f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &v| [low.min(v), high.max(v)])
+    least_and_most(signals.flat_map(|signals| signals.q[joint.0].iter()))
 }
 
 #[cfg(test)]

@@ -250,11 +250,9 @@ impl Posterior {
         let triangle = self.factor.l_dirty();
         let determinant: f64 = (0..self.mean.len()).map(|k| 2.0 * triangle[(k, k)].ln()).sum();
         let shape = policy::NOISE_SHAPE;
-        let of_noise: f64 = variances
-            .iter()
-            .zip(expected)
-            .map(|(v, level)| -(shape + 1.0) * (v / level).ln() - shape * level / v)
-            .sum();
+        let of_level =
+            |(v, level): (&f64, &f64)| (shape + 1.0) * (v / level).ln() + shape * level / v;
+        let of_noise = -variances.iter().zip(expected).map(of_level).sum::<f64>();
         let explained = self.right.dot(&self.mean);
         of_noise - 0.5 * (of_rows + determinant + self.square - explained)
     }

@@ -30,6 +30,23 @@ pub fn cubic(values: [f64; 4], u: f64) -> f64 {
     values.iter().zip(cubic_weights(u)).map(|(value, weight)| value * weight).sum()
 }
 
+/// A signal at a place among its samples: the polynomial of fifth degree through the six next to it,
+/// of which at least three must be on either side. Below a tenth of the sampling rate it is off by
+/// less than 0.1 %.
+pub fn quintic(signal: &[f64], place: f64) -> f64 {
+    let first = place.floor();
+    let (at, x) = (first as usize, place - first);
+    if x == 0.0 {
+        return signal[at];
+    }
+    let nodes = [-2.0, -1.0, 0.0, 1.0, 2.0, 3.0];
+    let weight = |own: f64| {
+        let others = nodes.iter().filter(|other| **other != own);
+        others.map(|other| (x - other) / (own - other)).product::<f64>()
+    };
+    nodes.iter().enumerate().map(|(k, &own)| weight(own) * signal[at + k - 2]).sum()
+}
+
 /// What each of these values counts.
 fn cubic_weights(u: f64) -> [f64; 4] {
     [
@@ -43,6 +60,15 @@ fn cubic_weights(u: f64) -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_between_six_samples_of_a_fifth_power_is_on_it() {
+        let power = |x: f64| 0.2 - x + 0.3 * x.powi(5);
+        let signal: Vec<f64> = (0..8).map(|k| power(f64::from(k) - 3.0)).collect();
+        for place in [2.0, 2.3, 3.9, 4.5] {
+            assert!((quintic(&signal, place) - power(place - 3.0)).abs() < 1e-10, "{place}");
+        }
+    }
 
     #[test]
     fn what_is_between_samples_of_a_cubic_is_on_it() {

@@ -14,6 +14,13 @@ pub fn rms(values: impl IntoIterator<Item = impl Borrow<f64>>) -> f64 {
     (sum / count.max(1) as f64).sqrt()
 }
 
+/// The least and the largest of values; of none infinity and -infinity.
+pub fn least_and_most(values: impl IntoIterator<Item = impl Borrow<f64>>) -> [f64; 2] {
+    values.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+        [low.min(*value.borrow()), high.max(*value.borrow())]
+    })
+}
+
 /// The mean; 0 of nothing.
 pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64

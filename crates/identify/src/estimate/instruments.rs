@@ -72,11 +72,9 @@ fn other_motion(log: &Conditioned, instrument: &Conditioned) -> f64 {
 /// Rows of Z and W beside each other: columns of Z come first.
 fn paired(model: &RegressionModel, rows: Rows<'_>, instruments: &[Conditioned]) -> Condensed {
     let rank = model.rank();
-    let pattern: Vec<Vec<usize>> = model
-        .pattern()
-        .iter()
-        .map(|places| places.iter().copied().chain(places.iter().map(|at| at + rank)).collect())
-        .collect();
+    let beside = |places: &Vec<usize>| places.iter().map(|at| at + rank).collect::<Vec<usize>>();
+    let pattern = model.pattern().iter().map(|places| [&places[..], &beside(places)].concat());
+    let pattern: Vec<Vec<usize>> = pattern.collect();
     let mut makers: Vec<BlockMaker<'_>> =
         instruments.iter().map(|log| BlockMaker::new(model, log)).collect();
     Condensed::of_rows(model, rows, pattern, 2 * rank, &mut |log, block, joint| {

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind};
 use crate::policy::laps::{COMPARED, DIGITS, FEWEST, LEFT_BY_LAP, MOVES, REPEATS, SETTLED};
-use denavit_numerics::{short, variance};
+use denavit_numerics::{quintic, short, variance};
 use std::ops::Range;
 
 /// Samples that a search for the period looks at, at most.
@@ -28,23 +28,6 @@ pub struct Laps {
 
 /// Samples on either side that a value between two samples is found from.
 const REACH: usize = 3;
-
-/// A signal between its samples: the polynomial of fifth degree through the six next to a place,
-/// of which at least three must be on either side. Below a tenth of the sampling rate, where the
-/// filter cuts, it is off by less than 0.1 %.
-fn between(signal: &[f64], place: f64) -> f64 {
-    let first = place.floor();
-    let (at, x) = (first as usize, place - first);
-    if x == 0.0 {
-        return signal[at];
-    }
-    let nodes = [-2.0, -1.0, 0.0, 1.0, 2.0, 3.0];
-    let weight = |own: f64| {
-        let others = nodes.iter().filter(|other| **other != own);
-        others.map(|other| (x - other) / (own - other)).product::<f64>()
-    };
-    nodes.iter().enumerate().map(|(k, &own)| weight(own) * signal[at + k - 2]).sum()
-}
 
 /// Places at which a motion is compared with itself a lag later: the range and the stride.
 #[derive(Clone, Copy)]
@@ -76,7 +59,7 @@ impl<'a> Compared<'a> {
         let of_joint = |(q, variance): &(&[f64], f64)| {
             let (mut sum, mut count) = (0.0, 0);
             for k in self.places(lag) {
-                sum += (between(q, k as f64 + lag) - q[k]).powi(2);
+                sum += (quintic(q, k as f64 + lag) - q[k]).powi(2);
                 count += 1;
             }
             sum / (2.0 * f64::from(count.max(1)) * variance)
@@ -93,7 +76,7 @@ impl<'a> Compared<'a> {
             for (q, variance) in self.moving {
                 for k in self.places(best) {
                     let place = k as f64 + best;
-                    let miss = q[k] - between(q, place);
+                    let miss = q[k] - quintic(q, place);
                     let at = place.floor() as usize;
                     let slope = q[at + 1] - q[at];
                     product += slope * miss / variance;
@@ -224,7 +207,7 @@ impl Laps {
             // what is whole but for rounding needs no neighbours
             let near = place.round();
             let place = if (place - near).abs() < 1e-6 { near } else { place };
-            between(signal, place)
+            quintic(signal, place)
         };
         (0..samples).map(|k| (0..count).map(|lap| at(lap, k)).sum::<f64>() / count as f64).collect()
     }

@@ -249,9 +249,7 @@ impl Conditioned {
             column.extend(range.clone().map(|at| self.moved(JointIndex(place % n), place / n, at)));
         }
     }
-}
 
-impl Conditioned {
     /// The position of a joint (order 0), its rate or its acceleration at a place within
     /// [`Conditioned::range`].
     pub fn moved(&self, joint: JointIndex, order: usize, place: usize) -> f64 {

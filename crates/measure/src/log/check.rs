@@ -6,7 +6,7 @@ use crate::policy::check::{
     ABOVE_ROUNDING, DIGIT, FAR_BEYOND, FASTEST_STEP_S, HOUR_S, IN_STEPS, LARGEST_ANGLE_RAD,
     MOST_STEPS, OTHER, ROUNDED, ROUNDING, SAME, SATURATED, SINGLE, SLOWEST_STEP_S, WHOLE,
 };
-use denavit_numerics::{mean, products};
+use denavit_numerics::{least_and_most, mean, products};
 use denavit_plants::regression::RegressionJoint;
 
 /// What looks wrong, and what is worth a remark.
@@ -40,41 +40,26 @@ pub(super) fn check(log: &MeasuredLog, joints: &[RegressionJoint]) -> Findings {
 }
 
 fn time_unit(log: &MeasuredLog, found: &mut Findings) {
-    if log.step_s > SLOWEST_STEP_S {
+    let factor = match log.step_s {
         // of microseconds these would be slower than any log
-        let factor = match log.step_s {
-            step if step > SLOWEST_STEP_S * 1e6 => 1e-9,
-            step if step >= 50.0 => 1e-6,
-            _ => 1e-3,
-        };
-        found.suspicions.push(Suspicion::TimeUnit {
-            step: log.step_s,
-            factor,
-            mapped: String::new(),
-        });
-    } else if log.step_s < FASTEST_STEP_S {
-        found.suspicions.push(Suspicion::TimeUnit {
-            step: log.step_s,
-            factor: HOUR_S,
-            mapped: String::new(),
-        });
-    }
-}
-
-fn range(column: &[f64]) -> [f64; 2] {
-    column.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
-        [low.min(value), high.max(value)]
-    })
+        step if step > SLOWEST_STEP_S * 1e6 => 1e-9,
+        step if step >= 50.0 => 1e-6,
+        step if step > SLOWEST_STEP_S => 1e-3,
+        step if step < FASTEST_STEP_S => HOUR_S,
+        _ => return,
+    };
+    let (step, mapped) = (log.step_s, String::new());
+    found.suspicions.push(Suspicion::TimeUnit { step, factor, mapped });
 }
 
 /// A joint moves if it goes further than rounding and the steps of its encoder.
 fn moves(joint: &JointSignals) -> bool {
-    let [low, high] = range(&joint.q);
+    let [low, high] = least_and_most(&joint.q);
     high - low > (4.0 * joint.step.unwrap_or(0.0)).max(1e-7 * high.abs().max(low.abs()).max(1e-3))
 }
 
 fn position(signals: &JointSignals, joint: &RegressionJoint, found: &mut Findings) {
-    let [low, high] = range(&signals.q);
+    let [low, high] = least_and_most(&signals.q);
     let column = format!("q_{}", joint.name);
     let largest = low.abs().max(high.abs());
     let limits = joint.position_limits;
@@ -136,7 +121,7 @@ fn torque(
     found: &mut Findings,
 ) {
     let Some(torque) = &signals.tau else { return };
-    let [low, high] = range(torque);
+    let [low, high] = least_and_most(torque);
     let column = format!("tau_{}", joint.name);
     if joint.is_base {
         return;
@@ -247,7 +232,7 @@ const MOST_DIGITS: i32 = 9;
 pub(super) fn encoder_step(q: &[f64]) -> Option<f64> {
     let q: Vec<f64> = q.iter().copied().filter(|q| !q.is_nan()).collect();
     let differences = q.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    let size = range(&q).into_iter().fold(0.0, |size: f64, value| size.max(value.abs()));
+    let size = least_and_most(&q).into_iter().fold(0.0, |size: f64, value| size.max(value.abs()));
     let tiny = 1e-12 * size.max(1e-6);
     let moved: Vec<f64> = differences.filter(|&d| d > tiny).take(20_000).collect();
     // where a position rests but for some steps, few tell their size

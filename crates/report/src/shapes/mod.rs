@@ -7,6 +7,7 @@ mod thin;
 
 use crate::html::base64;
 use crate::space::Vec3;
+use denavit_numerics::least_and_most;
 use denavit_workflow::{DrawnForm, LookOfLink, Shapes};
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -150,11 +151,8 @@ fn long_or_wrong(found: &[Triangle]) -> Result<(), String> {
         return Err("a corner of it is not finite".to_owned());
     }
     let most = |axis: usize| {
-        let along = corners().map(|corner| corner[axis]);
-        let ends = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], entry| {
-            [low.min(entry), high.max(entry)]
-        });
-        ends[1] - ends[0]
+        let [low, high] = least_and_most(corners().map(|corner| corner[axis]));
+        high - low
     };
     let long = [0, 1, 2].map(most).into_iter().fold(0.0, f64::max);
     if long > LONGEST_M {

@@ -3,6 +3,7 @@
 use super::posture::{Conditions, Posture, Sought, bent, first, placed, reach};
 use crate::error::{Error, PlanError};
 use crate::inverse_kinematics::{Condition, largest_error};
+use denavit_numerics::least_and_most;
 use denavit_plants::{Plant, PlantModel};
 use denavit_simulate::SupportPolygon;
 
@@ -202,10 +203,7 @@ impl Biped {
         });
         // convex shapes are apart if a line along an edge of one of them has them on both sides
         let extent = |hull: &[[f64; 3]], [u, v]: [f64; 2]| {
-            let along = hull.iter().map(move |corner| u * corner[0] + v * corner[1]);
-            along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-                [low.min(value), high.max(value)]
-            })
+            least_and_most(hull.iter().map(|corner| u * corner[0] + v * corner[1]))
         };
         edges.into_iter().any(|edge| {
             let [right, left] = [0, 1].map(|side| extent(&hulls[side], edge));

@@ -3,6 +3,7 @@
 use super::balance_log::turning_bodies;
 use crate::run::{BalanceCurve, BalancePicture};
 use crate::{Align, Table, percent};
+use denavit_numerics::least_and_most;
 use denavit_walk::balance::{Course, Criterion, Instant, Margins};
 use denavit_workflow::Judged;
 use serde_json::{Map, Value, json as value};
@@ -129,8 +130,7 @@ pub fn balance_json(what: BalanceCriterion, judged: &Judged) -> Value {
 }
 
 fn range(course: &Course, value: impl Fn(&Instant) -> f64) -> [f64; 2] {
-    let values = course.instants.iter().map(value);
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+    least_and_most(course.instants.iter().map(value))
 }
 
 /// The least and the largest angular momentum about each axis, of the robot and of its bodies.

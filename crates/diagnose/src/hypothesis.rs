@@ -68,8 +68,7 @@ impl Hypothesis {
         self.parts.iter().map(of).collect()
     }
 
-    /// Whether all effects are linearised where they have a shape: one that is off has no slope, and
-    /// its evidence nothing of what is not known of its shape.
+    /// Whether all effects are linearised where they have a shape.
     pub(super) fn is_shaped(&self) -> bool {
         let is_flat = |column: &Spectrum| column.iter().flatten().all(|entry| *entry == 0.0);
         self.parts.iter().all(|part| {

@@ -337,6 +337,15 @@ impl<'a> Search<'a> {
         self.linearised(first, &|_| true, policy::ROUNDS[1])
     }
 
+    /// What was found, linearised where effects have a shape: one that is off has no slope, and its
+    /// values nothing of what is not known of its shape.
+    pub(super) fn shaped(&self, found: Hypothesis) -> Hypothesis {
+        let moved = (!found.is_shaped()).then(|| self.moved(&found, &|_| true, 1.0));
+        let Some((parts, _)) = moved.flatten() else { return found };
+        let first = self.weighed(parts, Some(&found), policy::ROUNDS[1]);
+        self.linearised(first, &|_| true, policy::ROUNDS[1])
+    }
+
     /// What was found, weighed by the numbers that it has, without what does the same beside it.
     pub(super) fn without_twins(&self, found: &Hypothesis) -> Hypothesis {
         let mut now = found.clone();
@@ -385,7 +394,7 @@ impl<'a> Search<'a> {
                 break;
             }
             now = self.weighed(parts, Some(&now), rounds);
-            if now.posterior > best.posterior || !best.is_shaped() && now.is_shaped() {
+            if now.posterior > best.posterior {
                 best = now.clone();
             } else if round > 1 {
                 // too far, for a law that bends on the way

@@ -53,6 +53,8 @@ pub(super) struct State {
     pub(super) taken: Vec<Taken>,
     /// For each effect the standard deviations of its parameters.
     pub(super) deviations: Vec<Vec<f64>>,
+    /// For each effect that was found the same by what is left at each time.
+    pub(super) by_time: Vec<Vec<f64>>,
     /// Effects that were found which no motion of the logs for training has act: they have their
     /// values by all logs.
     pub(super) untrained: Vec<usize>,
@@ -80,7 +82,7 @@ impl<'a> Setting<'a> {
         let parts: Vec<Part> = parts.collect();
         weighing.base = weighing.base_beside(&parts);
         let search = Search::new(weighing, [self.candidates.len(), 0], Vec::new(), &mut |_| true);
-        let fitted = search.settled(parts, None);
+        let fitted = search.shaped(search.settled(parts, None));
         self.fitted_state(&search.weighing, [found, &fitted])
     }
 
@@ -107,12 +109,8 @@ impl<'a> Setting<'a> {
             train: left(self.data.train, &torques.train),
             held_out: left(self.data.held_out, &torques.held_out),
         };
-        let moved = self.deviations_by_time(weighing, fitted, &residual.train);
-        let all = deviations[self.given.len()..].iter_mut().zip(moved).enumerate();
-        for (_, (own, moved)) in all.filter(|(place, _)| trained.contains(place)) {
-            own.iter_mut().zip(moved).for_each(|(own, moved)| *own = own.max(moved));
-        }
-        State { taken, deviations, untrained, z, residual, torques }
+        let by_time = self.deviations_by_time(weighing, fitted, &residual.train);
+        State { taken, deviations, by_time, untrained, z, residual, torques }
     }
 
     /// The deviations of what was found by what is left at each time: where a law is not quite what
@@ -155,15 +153,18 @@ impl<'a> Setting<'a> {
         Weighing::new(vec![self.data.held_out], self.effects(&self.given), [z, z], &[])
     }
 
-    /// The deviations of an effect that was found. Another law than what is there has other values
-    /// in another motion (Chow 1960): errors are no less than how far values by the logs for
-    /// training are from those by all logs. Of a law that is there that is less than its deviation,
-    /// most of the time, and says nothing new.
+    /// The errors of the values of an effect that was found. Another law than what is there has
+    /// other values in another motion (Chow 1960): errors are no less than how far values by the
+    /// logs for training are from those by all logs, or than what is left moves them. Of a law that
+    /// is there that is less than its deviation, most of the time, and says nothing new.
     pub(super) fn errors(&self, state: &State, by_all: &Hypothesis, place: usize) -> Vec<f64> {
         let own = self.given.len() + place;
         let apart = state.taken[own].values.iter().zip(by_all.values(place));
-        let both = state.deviations[own].iter().zip(apart);
-        both.map(|(deviation, (one, other))| deviation.max((one - other).abs())).collect()
+        let both = state.deviations[own].iter().zip(&state.by_time[place]);
+        let error = |((a, b), (one, other)): ((&f64, &f64), (&f64, f64))| {
+            a.max(*b).max((one - other).abs())
+        };
+        both.zip(apart).map(error).collect()
     }
 
     /// Held-out logs with the effects as those that were fitted have them, weighed. Noise is that

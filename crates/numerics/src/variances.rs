@@ -146,6 +146,20 @@ mod tests {
         }
     }
 
+    /// Of independent terms the variance is the sum of squares, and of terms that come in equal
+    /// pairs nearly twice that, wherever the pairs begin.
+    #[test]
+    fn sums_of_terms_that_are_alike_vary_more() {
+        let mut random = Random::new(5);
+        let white: Vec<f64> = (0..20_000).map(|_| random.normal()).collect();
+        let pairs: Vec<f64> = white.iter().flat_map(|term| [*term, *term]).collect();
+        let squares = |terms: &[f64]| terms.iter().map(|term| term * term).sum::<f64>();
+        for (terms, alike) in [(&white[..], 1.0), (&pairs, 1.9), (&pairs[1..], 1.9)] {
+            let found = variance_of_sum(terms, 10) / squares(terms);
+            assert!((found - alike).abs() < 0.1, "{found} {alike}");
+        }
+    }
+
     /// An autoregressive signal of the first order with factor 0.8 is like itself over
     /// (1 + 0.8) / (1 - 0.8) = 9 samples.
     #[test]

@@ -50,3 +50,24 @@ fn what_numbers_do_in_the_same_data_is_no_merit_of_an_effect() {
     assert_eq!(log_evidence(&first.in_same_data(&other, &[])), now);
     assert!((log_evidence(&first.beside(&other, &[])) - now).abs() > 1.0);
 }
+
+/// Lines with factors are the rows of the same sum: the transform and its transpose.
+#[test]
+fn factors_of_lines_are_in_their_rows() {
+    let robot = denavit_codegen::model::read("sled", SLED.as_bytes()).expect("a model");
+    let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
+    let signals = vec![Signals::new(waves(), Filters::of_torques(15.0)).expect("long enough")];
+    let nominal = Nominal::new(&model).moving_as(&signals);
+    let data = Data::new(&nominal, signals, &vec![0.0; nominal.len()]);
+    let spectra = Spectra::new(&[&data], 15.0);
+    let mut random = Random::new(2);
+    let rows: Vec<f64> = (0..data.rows()).map(|_| random.normal()).collect();
+    let lines = spectra.of_rows(&[&data], &[&rows], f64::INFINITY);
+    let factors: Spectrum =
+        lines.iter().map(|all| all.iter().map(|_| random.normal()).collect()).collect();
+    let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let of_lines = sum(&lines.concat(), &factors.concat());
+    let of_rows = sum(&rows, &spectra.to_rows(&[&data], &factors)[0]);
+    assert!((of_lines - of_rows).abs() < 1e-9 * of_lines.abs(), "{of_lines} {of_rows}");
+    assert!(data.weights.iter().any(|weight| *weight < 0.9), "rows count alike");
+}

@@ -218,6 +218,27 @@ fn what_takes_nearly_all_away_must_predict_the_rest() {
     }
 }
 
+/// A row that is one more moves each factor, linear or curved, by its influence.
+#[test]
+fn rows_move_factors_by_their_influences() {
+    let (data, own, terms) = problem(31);
+    let terms = Terms { is_curved: vec![false, true], ..terms };
+    let factors = |data: &Spectrum| {
+        let base = Base::new(layout(), data.clone(), &own);
+        base.weigh(&[&terms], Some(&VARIANCES), 0).step
+    };
+    let influences = Base::new(layout(), data.clone(), &own).influences(&[&terms], &VARIANCES);
+    let before = factors(&data);
+    for (channel, row) in [(0, 2), (0, 11), (1, 5)] {
+        let mut more = data.clone();
+        more[channel][row] += 1.0;
+        for (k, after) in factors(&more).iter().enumerate() {
+            let moved = after - before[k];
+            assert!((moved - influences[k][channel][row]).abs() < 1e-9, "{k} {channel} {row}");
+        }
+    }
+}
+
 /// A lag of what was measured leaves less of its noise, and predicts nothing by that: the density
 /// of the data is that of what passes, times by how much data shrink. What moves the robot is in
 /// what is computed as well: there a lag predicts what it leaves.

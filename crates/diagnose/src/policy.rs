@@ -163,6 +163,9 @@ pub(crate) mod state {
     /// Entries of z that are further from 0 say that the model's own numbers are off by more than
     /// it states. Experiments, and parameters of effects that the model has, do not go beyond.
     pub(crate) const MOST_Z: f64 = 3.0;
+
+    /// Periods of the cutoff of torques in which what is left is like itself: the filter makes one.
+    pub(crate) const ALIKE_PERIODS: f64 = 2.0;
 }
 
 /// `structure.rs`: What no effect explains, as a formula without a name: a few terms of a general

@@ -8,13 +8,11 @@ use super::hypothesis::{Hypothesis, Part};
 use super::law::Motion;
 use super::search::Search;
 use super::weighing::{Placed, Weighing};
+use crate::policy::state::ALIKE_PERIODS;
 pub(super) use crate::policy::state::MOST_Z;
 use denavit_evidence::{Spectrum, Terms, policy};
 use denavit_measure::Split;
 use denavit_numerics::variance_of_sum;
-
-/// Periods of the cutoff of torques in a part of time.
-const PART_PERIODS: f64 = 2.0;
 
 /// An effect that was taken into the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,7 +132,7 @@ impl<'a> Setting<'a> {
             }
             let all = signals.iter().zip(&moved);
             let squares = all.map(|(log, moved)| {
-                let together = PART_PERIODS / log.torque_hz / log.row_step_s();
+                let together = ALIKE_PERIODS / log.torque_hz / log.row_step_s();
                 variance_of_sum(moved, (together as usize).max(1))
             });
             squares.sum::<f64>().sqrt()

@@ -58,3 +58,19 @@ fn what_acts_once_in_a_log_stands_for_nothing_that_fades() {
         assert_eq!(one.stands_for, None, "{:?}", found.reasons);
     }
 }
+
+/// A stop that hardens leaves most where it acts: its value is far less sure than that of one that
+/// does not, which is as sure as noise has it.
+#[test]
+fn a_stop_is_as_sure_as_what_is_left_at_it() {
+    let stiffness = |harder: f64| {
+        let motions = [(0.5, 0.4), (0.5, 1.1)].map(|(size, phase)| waves(size, 5.0, phase));
+        let logs = [1, 2].map(|seed| log(&motions[seed - 1], &torque(harder), seed as u64, 0.02));
+        let (found, _) = diagnosed(ROD, logs);
+        let [one] = &found.effects[..] else { panic!("{:?}", found.reasons) };
+        one.parameters.iter().find(|one| one.name == "k").expect("a stiffness").clone()
+    };
+    let [plain, hardening] = [0.0, 0.02].map(stiffness);
+    assert!((plain.value - 300.0).abs() < 3.0 * plain.std, "{plain:?}");
+    assert!(hardening.std > 8.0 * plain.std, "{plain:?} {hardening:?}");
+}

@@ -96,6 +96,17 @@ fn a_law_of_friction_is_held_against_all_that_every_drive_has() {
     assert_eq!(names, ["stribeck_friction", "viscous"], "{:?}", found.reasons);
 }
 
+/// Where the shape of a law is the one that a search begins with, logs tell it all the same: its
+/// error is theirs, and not what was believed before.
+#[test]
+fn a_shape_that_was_guessed_is_as_sure_as_its_logs() {
+    let (found, names) = with(&mut |_, [_, v, _]| 0.06 * (-(v / 0.16).powi(2)).exp() * v.signum());
+    assert_eq!(names, ["stribeck"], "{:?}", found.reasons);
+    let [height, rate] = &found.effects[0].parameters[..] else { panic!("{:?}", found.effects) };
+    assert!(rate.std < 0.01 && (rate.value - 0.16).abs() < 3.0 * rate.std, "{rate:?}");
+    assert!((height.value - 0.06).abs() < 3.0 * height.std, "{height:?}");
+}
+
 /// Cogging of another phase in the held-out log did not repeat, however well it would fit there.
 #[test]
 fn what_held_out_logs_have_otherwise_is_no_law() {

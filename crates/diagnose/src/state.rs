@@ -126,7 +126,7 @@ impl<'a> Setting<'a> {
             let mut moved: Vec<Vec<f64>> = vec![Vec::new(); signals.len()];
             for stretch in stretches {
                 let moved = &mut moved[stretch.log.0];
-                moved.resize(stretch.rows, 0.0);
+                moved.resize(moved.len().max(stretch.rows), 0.0);
                 let rows = stretch.range().map(|row| influence[row] * residual[row]);
                 moved.iter_mut().zip(rows).for_each(|(sum, by)| *sum += by);
             }

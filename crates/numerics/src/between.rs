@@ -30,9 +30,9 @@ pub fn cubic(values: [f64; 4], u: f64) -> f64 {
     values.iter().zip(cubic_weights(u)).map(|(value, weight)| value * weight).sum()
 }
 
-/// A signal at a place among its samples: the polynomial of fifth degree through the six next to it,
-/// of which at least three must be on either side. Below a tenth of the sampling rate it is off by
-/// less than 0.1 %.
+/// A signal at a place among its samples: the polynomial of fifth degree through the six next to
+/// it, of which at least three must be on either side. Below a tenth of the sampling rate it is off
+/// by less than 0.1 %.
 pub fn quintic(signal: &[f64], place: f64) -> f64 {
     let first = place.floor();
     let (at, x) = (first as usize, place - first);

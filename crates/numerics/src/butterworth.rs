@@ -123,8 +123,8 @@ impl Butterworth {
         impulse
     }
 
-    /// [`Self::zero_phase`] of signals side by side, each to the bit what it is alone. Each waits for its own
-    /// last sample and for no other's, so that a few take hardly longer than one.
+    /// [`Self::zero_phase`] of signals side by side, each to the bit what it is alone. Each waits
+    /// for its own last sample and for no other's, so that a few take hardly longer than one.
     pub fn zero_phase_lanes<const LANES: usize>(&self, signals: &mut [[f64; LANES]]) {
         let Some((&first, &last)) = signals.first().zip(signals.last()) else { return };
         let (pad, end) = (self.settling.min(signals.len() - 1), signals.len() - 1);

@@ -6,9 +6,12 @@
 //! - [`Equations`]: linear equations with errors, and which unknowns or sums of them follow
 //! - [`least_squares`]: rows condensed to triangles as they come, and what follows from them
 //! - [`interval_factor`], [`least_by_chance`]: what chance makes of errors and variances
-//! - [`long_run`], [`variance_of_sum`], [`time_alike`]: variances and samples where neighbours are alike
-//! - [`rms`], [`mean`], [`variance`], [`median`], [`least_and_most`], [`products`]: numbers of a signal, or of two
-//! - [`derivative`]: central differences; [`between`], [`cubic`], [`quintic`]: a signal between its samples
+//! - [`long_run`], [`variance_of_sum`], [`time_alike`]: variances and samples where neighbours are
+//!   alike
+//! - [`rms`], [`mean`], [`variance`], [`median`], [`least_and_most`], [`products`]: numbers of a
+//!   signal, or of two
+//! - [`derivative`]: central differences; [`between`], [`cubic`], [`quintic`]: a signal between its
+//!   samples
 //! - [`extremes`]: the rows of long columns that a picture needs
 //! - [`envelope`]: what is between the ends of a signal that chatters
 //! - [`short`], [`percent`]: numbers as a person writes them

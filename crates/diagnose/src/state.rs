@@ -151,18 +151,22 @@ impl<'a> Setting<'a> {
         Weighing::new(vec![self.data.held_out], self.effects(&self.given), [z, z], &[])
     }
 
-    /// The errors of the values of an effect that was found. Another law than what is there has
-    /// other values in another motion (Chow 1960): errors are no less than how far values by the
-    /// logs for training are from those by all logs, or than what is left moves them. Of a law that
-    /// is there that is less than its deviation, most of the time, and says nothing new.
+    /// The errors of the values of an effect that was found: how far they may be from those of
+    /// another motion, and no less than what is left moves them.
     pub(super) fn errors(&self, state: &State, by_all: &Hypothesis, place: usize) -> Vec<f64> {
+        let both = self.apart(state, by_all, place).into_iter().zip(&state.by_time[place]);
+        both.map(|(apart, by_time)| apart.max(*by_time)).collect()
+    }
+
+    /// The deviations of an effect that was found. Another law than what is there has other values
+    /// in another motion (Chow 1960): they are no less than how far values by the logs for training
+    /// are from those by all logs. Of a law that is there that is less than its deviation, most of
+    /// the time, and says nothing new.
+    fn apart(&self, state: &State, by_all: &Hypothesis, place: usize) -> Vec<f64> {
         let own = self.given.len() + place;
         let apart = state.taken[own].values.iter().zip(by_all.values(place));
-        let both = state.deviations[own].iter().zip(&state.by_time[place]);
-        let error = |((a, b), (one, other)): ((&f64, &f64), (&f64, f64))| {
-            a.max(*b).max((one - other).abs())
-        };
-        both.zip(apart).map(error).collect()
+        let both = state.deviations[own].iter().zip(apart);
+        both.map(|(deviation, (one, other))| deviation.max((one - other).abs())).collect()
     }
 
     /// Held-out logs with the effects as those that were fitted have them, weighed. Noise is that
@@ -180,7 +184,7 @@ impl<'a> Setting<'a> {
         let parts = found.iter().enumerate().map(|(place, taken)| {
             let Taken { candidate, values } = taken.clone();
             let deviations = match self.candidates[candidate].is_standard() {
-                true => self.errors(state, by_all, place),
+                true => self.apart(state, by_all, place),
                 false => state.deviations[self.given.len() + place].clone(),
             };
             let center = values.clone();
